@@ -1,0 +1,21 @@
+# SPDX-License-Identifier: Apache-2.0
+# Script mode: writes OUT, a C++ source with the text of FILES by their path relative to ROOT.
+set(text "// Made by cmake/embed_files.cmake from kernels/.\n#include \"device/embedded.hpp\"\n\nnamespace clray {\n\n")
+string(APPEND text "const std::map<std::string, std::string>& embedded_kernels() {\n")
+string(APPEND text "  static const std::map<std::string, std::string> files = {\n")
+foreach(file IN LISTS FILES)
+  file(RELATIVE_PATH name ${ROOT} ${file})
+  file(READ ${file} body)
+  # A raw string holds at most 64 KiB on some compilers: split at 8 KiB.
+  string(APPEND text "      {\"${name}\", std::string()\n")
+  string(LENGTH "${body}" length)
+  set(at 0)
+  while(at LESS length)
+    string(SUBSTRING "${body}" ${at} 8000 part)
+    string(APPEND text "           + R\"clray~(${part})clray~\"\n")
+    math(EXPR at "${at} + 8000")
+  endwhile()
+  string(APPEND text "      },\n")
+endforeach()
+string(APPEND text "  };\n  return files;\n}\n\n}  // namespace clray\n")
+file(WRITE ${OUT} "${text}")

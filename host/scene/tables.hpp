@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// The rows of brdf.def, shape.def and detector.def as data: names, keys, defaults and ranges.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace clray {
+
+/// One key of a row, e.g. "rho 0.5 [0,1] diffuse reflectance".
+struct TableKey {
+  std::string name;
+  double default_value = 0.0;     ///< NaN: not given
+  std::string default_key;        ///< not empty: the default is the value of this earlier key
+  double low = 0.0, high = 0.0;   ///< infinite where open
+  bool low_included = true, high_included = true;
+  bool is_switch = false;         ///< range written {0,1}
+  std::string range;              ///< as written, for messages
+  std::string meaning;
+};
+
+struct TableRow {
+  std::string id;                 ///< identifier: the kernel file's stem
+  std::string name;               ///< scene-file name
+  std::string side;               ///< detectors: "beam" or "pixel"
+  std::vector<TableKey> keys;
+  std::string meaning;
+};
+
+/// Rows in the order of the file, which is the number kernels know them by. kind: "brdf", "shape", "detector".
+const std::vector<TableRow>& table(const std::string& kind);
+
+/// Row number by scene-file name, or -1.
+int table_index(const std::string& kind, const std::string& name);
+
+/// The row's keys in order, with defaults filled in.
+std::vector<double> row_values(const TableRow& row, const std::map<std::string, double>& parameters);
+
+}  // namespace clray

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a run found: every number with its standard error, per detector, observer, variant, band and
+// orientation. SI units (m, s, sr, N); files convert to the units in their column names.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <string>
+#include <vector>
+
+#include "clray/device.hpp"
+#include "clray/scene.hpp"
+
+namespace clray {
+
+/// A number with its error, from the spread of the replicates.
+struct Estimate {
+  double value = 0.0;
+  double standard_error = 0.0;
+  double low = 0.0, high = 0.0;                  ///< 95 % Student-t interval
+  double relative_variance_of_variance = 0.0;    ///< of the squared standard error; NaN where undefined
+};
+
+/// A vector with a standard error per component.
+struct VectorEstimate {
+  Vec3 value{0.0};
+  Vec3 standard_error{0.0};
+};
+
+/// Which member of a run a record belongs to; empty names where there is only one.
+struct ResultKey {
+  std::string detector;       ///< DetectorSpec::name
+  std::string observer;
+  std::string variant;
+  std::string band;
+  std::size_t orientation = 0;///< index into Result::orientations
+};
+
+/// One instant of the motion (a single one, the identity, without motion).
+struct Orientation {
+  double time_s = 0.0;
+  Quaternion body_to_space{1.0, 0.0, 0.0, 0.0};
+  Vec3 source{0.0, 0.0, 1.0};                 ///< toward the source, body frame
+  std::vector<Vec3> observers;                ///< body frame, one per Scene::observers
+};
+
+/// The delay camera: A(t), see PHYSICS section 1.
+struct DelayResult {
+  ResultKey key;
+  Estimate intensity_m2_per_sr;               ///< A, everything including below and above the window
+  Estimate mean_delay_s, rms_width_s;
+  double first_bin_start_s = 0.0, bin_width_s = 0.0;
+  std::vector<double> bin_m2_per_sr;          ///< A per bin (not per second)
+  std::vector<double> bin_standard_error;     ///< same unit
+  std::vector<double> bin_upper_bound;        ///< for unresolved bins; same unit
+  std::vector<std::uint64_t> hits;
+  std::vector<std::uint8_t> resolved;
+  double below_m2_per_sr = 0.0, above_m2_per_sr = 0.0;
+};
+
+/// The one-pixel spectrometer: A in one band.
+struct SpectrometerResult {
+  ResultKey key;
+  Band band;
+  Estimate intensity_m2_per_sr;
+  double source_W_m2 = 0.0;                   ///< of the source inside the band
+  double received_W_m2 = 0.0, received_W_m2_standard_error = 0.0;  ///< at the observer's range; 0 without one
+  double magnitude_AB = 0.0, magnitude_standard_error = 0.0;       ///< NaN without a range
+  double phase_angle_rad = 0.0;
+};
+
+/// Radiation force and torque per unit irradiance, net of all bounces.
+struct PressureResult {
+  ResultKey key;
+  Vec3 sun{0.0, 0.0, 1.0};                    ///< toward the source, body frame
+  VectorEstimate coefficient_m2;              ///< C = F c / E
+  VectorEstimate torque_coefficient_m3;       ///< about the reference point
+  std::vector<VectorEstimate> component_m2, component_m3;  ///< shares, one per Scene::components
+  Estimate absorbed_m2;                       ///< absorbed power over irradiance
+};
+
+/// A picture or cube: radiance over irradiance (1/sr) per pixel and band.
+struct ImageResult {
+  ResultKey key;
+  int width = 0, height = 0;
+  double pixel_m = 0.0;                       ///< edge of a pixel at the body
+  Vec3 right{1, 0, 0}, up{0, 1, 0}, toward{0, 0, 1};  ///< image axes in the body frame
+  std::vector<Band> bands;
+  std::vector<double> band_source_W_m2;
+  std::vector<float> coverage;                ///< [y][x] share of the pixel covered by the body; row 0 on top
+  std::vector<double> radiance_per_sr;        ///< [band][y][x] radiance per unit irradiance
+  std::vector<double> standard_error_per_sr;  ///< same shape
+};
+
+/// Energy books of a run with bounces, as shares of the incident energy (PHYSICS section 4).
+struct EnergyBooks {
+  Estimate incident_m2, reflected_m2, absorbed_m2, roulette_m2, truncated_m2, unconnected_specular_m2;
+  std::uint64_t started = 0, escaped = 0, killed = 0, capped = 0;  ///< exact: started = the sum of the others
+};
+
+/// One point of error against run time.
+struct ErrorPoint {
+  std::string phase;                          ///< "search", "confirm" or "trace"
+  std::uint64_t rays = 0;                     ///< per orientation
+  double seconds = 0.0;                       ///< of tracing, from the phase's start
+  double relative_standard_error = 0.0;       ///< the largest over all targets; NaN if all totals are zero
+};
+
+/// Failures, counted and never hidden; all are zero in a sound run.
+struct Diagnostics {
+  std::uint64_t non_finite = 0, stack_overflow = 0, lost_rays = 0, accumulator_overflow = 0;
+  double below_window_fraction = 0.0, above_window_fraction = 0.0, truncated_energy_fraction = 0.0;
+};
+
+struct Seconds {
+  double load = 0.0, bvh = 0.0, compile = 0.0, trace = 0.0, total = 0.0;
+};
+
+/// Everything a run found.
+struct Result {
+  DeviceInfo device;
+  std::uint64_t seed = 0;
+  std::uint64_t rays = 0;                     ///< per orientation, of the result (the confirmation's)
+  std::uint64_t rays_total = 0;               ///< traced in all
+  int replicates = 0;
+  std::uint64_t digest = 0;                   ///< of all integer sums: equal digests mean equal results
+  bool partial = false;                       ///< ended early by a signal or the time limit
+  bool target_asked = false, target_reached = false;
+  double extent_m = 0.0;                      ///< diameter of the bounding sphere
+  MeshReport mesh;                            ///< all meshes together
+  Seconds seconds;
+  Diagnostics diagnostics;
+  EnergyBooks energy;
+  std::vector<std::string> kept, left_out;    ///< decisions of specialisation, each with its reason
+  std::vector<std::string> warnings;
+  std::vector<ErrorPoint> errors;
+  std::vector<Orientation> orientations;
+  std::vector<DelayResult> delay;
+  std::vector<SpectrometerResult> spectrometer;
+  std::vector<PressureResult> pressure;
+  std::vector<ImageResult> image;             ///< of rgb and hyperspectral detectors
+};
+
+/// How to write results.
+struct WriteOptions {
+  bool plots = true;
+  std::string command;                        ///< as typed, for the summary
+  std::string reference_file;                 ///< a summary.json or delay.csv to measure the true error against
+};
+
+/// Writes summary.json, tables and pictures into `folder`, which appears (or is replaced) only whole.
+/// Returns the file names written. Throws Error(output).
+std::vector<std::string> write_result(const Result& result, const Scene& scene, const std::string& folder,
+                                      const WriteOptions& options = {});
+
+/// Shots of a laser-ranging session over the motion of `scene`, from its delay results (PHYSICS section 5);
+/// written by write_result() where the scene has a station and a motion.
+struct SessionSummary {
+  std::uint64_t shots = 0, signal = 0, noise = 0, none = 0;
+};
+
+}  // namespace clray

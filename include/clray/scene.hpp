@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is traced: components with their shapes and materials, the source, the observers, the motion,
+// the station and the detectors. Filled from a file by load_scene() or by hand by a host application.
+// Frame: the body frame (the mesh frame), metres, radians, seconds; unit vectors point away from the body.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/vec3.hpp>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "clray/detector.hpp"
+#include "clray/trace.hpp"
+
+namespace clray {
+
+using Vec3 = glm::dvec3;
+using Quaternion = glm::dquat;
+
+/// A quantity against wavelength, linear between its points and constant beyond them.
+/// Wavelengths in nm, strictly increasing, at least one point.
+struct Spectrum {
+  std::vector<double> wavelength_nm;
+  std::vector<double> value;
+};
+
+/// A tabulated isotropic BRDF: f in 1/sr on a grid of angles, see docs/scene-file.md.
+struct BrdfTable {
+  std::vector<double> theta_i_rad, theta_o_rad, phi_rad;
+  std::vector<double> value;  ///< [theta_i][theta_o][phi], 1/sr
+};
+
+/// Surface reflection: a row of brdf.def and its parameters.
+struct Material {
+  std::string name;
+  std::string model = "lambert";             ///< scene-file name of a row of brdf.def
+  std::map<std::string, double> parameters;  ///< by the row's keys; an absent key takes its default
+  std::map<std::string, Spectrum> spectra;   ///< keys given as spectra; they override `parameters`
+  bool two_sided = true;                     ///< false: the back reflects nothing
+  std::shared_ptr<const BrdfTable> table;    ///< for "tabulated"
+  /// Infrared (thermal) reflectance in [0,1]; used by `pressure` with thermal re-radiation only.
+  double infrared_reflectance = 0.0;
+};
+
+/// What a mesh reader found; counted from the file's own indices.
+struct MeshReport {
+  std::uint64_t faces = 0;              ///< polygons in the file
+  std::uint64_t triangles = 0;          ///< after triangulation
+  double area_m2 = 0.0;                 ///< sum over all triangles
+  std::uint64_t degenerate = 0;         ///< triangles of zero area
+  std::uint64_t boundary_edges = 0;     ///< edges with one face
+  std::uint64_t non_manifold_edges = 0; ///< edges with more than two faces, or two that disagree in winding
+};
+
+/// A triangle mesh in metres, in the order of its file.
+struct Mesh {
+  std::vector<Vec3> vertices;
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise seen from outside
+  std::vector<std::uint32_t> triangle_slot;             ///< index into material_slots, one per triangle
+  std::vector<std::string> material_slots;              ///< names from usemtl; at least one entry, "" if none
+  std::vector<Material> file_materials;                 ///< from the MTL; matched to slots by name
+  MeshReport report;
+  std::vector<std::string> warnings;                    ///< e.g. a missing MTL, with file:line
+};
+
+/// scale, then rotate about `axis` (right-handed), then translate.
+struct Transform {
+  Vec3 translate{0.0};
+  Vec3 axis{0.0, 0.0, 1.0};
+  double angle_rad = 0.0;
+  double scale = 1.0;
+};
+
+/// A joint that turns a component about a line; `follow` turns its +z toward the source or the observer.
+struct Hinge {
+  enum class Follow { none, source, observer };
+  Vec3 axis{1.0, 0.0, 0.0};
+  Vec3 point{0.0};
+  double angle_rad = 0.0;
+  Follow follow = Follow::none;
+};
+
+/// One part of the body.
+struct Component {
+  std::string name;
+  std::string shape = "mesh";                ///< scene-file name of a row of shape.def
+  std::map<std::string, double> parameters;  ///< by the row's keys (lengths in m; booleans 0 or 1)
+  std::shared_ptr<const Mesh> mesh;          ///< for "mesh"; instances share it
+  std::vector<std::uint32_t> materials;      ///< index into Scene::materials, one per mesh slot (one for a shape)
+  Transform transform;
+  std::optional<Hinge> hinge;
+};
+
+/// A wavelength interval with a name such as "400-500".
+struct Band {
+  std::string name;
+  double low_nm = 0.0;
+  double high_nm = 0.0;
+};
+
+/// The light: parallel, of unit irradiance unless a detector states otherwise.
+struct Source {
+  enum class Kind { laser, sun };
+  Kind kind = Kind::laser;
+  Vec3 direction{0.0, 0.0, 1.0};      ///< unit vector toward the source
+  double wavelength_nm = 532.0;       ///< of a laser
+  std::vector<Band> bands;            ///< empty: the laser line, or for a sun one band 400-700 nm
+  std::optional<Spectrum> spectrum;   ///< W/m²/nm; a sun without one is Planck at 5772 K
+  double blackbody_K = 0.0;           ///< > 0: Planck at this temperature, scaled to irradiance_W_m2
+  double irradiance_W_m2 = 1361.0;    ///< of a sun or blackbody, all wavelengths
+};
+
+/// Who looks. `monostatic` puts the observer exactly at the source, whatever the direction says.
+struct Observer {
+  std::string name;
+  Vec3 direction{0.0, 0.0, 1.0};
+  bool monostatic = true;
+  double acceptance_rad = 0.0;        ///< half angle of the cone that collects mirror reflections; 0: none
+};
+
+/// Body-to-space attitude at a time.
+struct Attitude {
+  double time_s = 0.0;
+  Quaternion body_to_space{1.0, 0.0, 0.0, 0.0};
+};
+
+/// Spin about a fixed axis, or a table of attitudes (then `attitudes` is not empty).
+struct Motion {
+  Vec3 axis{0.0, 0.0, 1.0};
+  double period_s = 0.0;
+  double phase_rad = 0.0;
+  double start_s = 0.0;
+  double stop_s = 0.0;
+  double step_rad = 0.0;              ///< of spin; an orientation is that at its step's start
+  std::vector<Attitude> attitudes;
+};
+
+/// A laser-ranging station and its link (PHYSICS section 5); defaults are those printed by a run.
+struct Station {
+  std::string name = "clray";
+  double range_m = 1.0e6;                       ///< fixed range, when neither table nor prediction is given
+  std::vector<std::pair<double, double>> ranges;///< (time_s, range_m), increasing time
+  std::string cpf_file;                         ///< an ILRS CPF v2 prediction; needs position_m
+  Vec3 position_m{0.0};                         ///< Earth-fixed
+  double start_mjd = 0.0;                       ///< epoch of session time 0 (UTC); 0: the CPF's first record
+  double pulse_energy_J = 0.08;
+  double pulse_fwhm_s = 0.0;                    ///< 0: a delta pulse
+  std::vector<std::pair<double, double>> pulse; ///< (time_s, relative power) table; overrides fwhm
+  double rate_Hz = 2000.0;
+  double aperture_m = 0.5;                      ///< receiver diameter
+  double divergence_rad = 25.0e-6;              ///< 1/e² half-angle
+  double pointing_rad = 0.0;
+  double eta_q = 1.0, eta_t = 1.0, eta_r = 1.0, T_a = 1.0, T_c = 1.0;
+  double noise_per_ns = 0.001;
+  double dark_per_ns = 0.0;
+  double gate_s = 100.0e-9;
+  double jitter_fwhm_s = 0.0;
+  double dead_time_s = 0.0;
+  bool flag_signal = false;                     ///< CRD filter flag 1 noise, 2 signal; else 0
+};
+
+/// Replacements of materials under which the same hits are shaded again.
+struct Variant {
+  std::string name;
+  std::vector<Material> materials;              ///< replace the scene's materials of the same name
+};
+
+/// Everything a run needs.
+struct Scene {
+  std::string path;                             ///< as given by the user, empty if built by hand
+  std::string name;                             ///< stem of the path
+  Vec3 reference_point{0.0};                    ///< delay zero and torque point, m
+  std::vector<Material> materials;
+  std::vector<Component> components;
+  std::vector<Variant> variants;
+  Source source;
+  std::vector<Observer> observers;              ///< at least one after load_scene()
+  std::optional<Motion> motion;
+  std::optional<Station> station;
+  std::vector<DetectorSpec> detectors;          ///< at least one after load_scene()
+  TraceOptions trace;
+  std::vector<std::string> warnings;
+};
+
+/// What the command line may say about a scene; it overrides the file.
+struct SceneOptions {
+  double length_unit_m = 0.0;                   ///< of mesh files; 0: the file's word, or metres
+  std::string material;                         ///< "model key=value …": overrides every material
+  std::optional<Vec3> source;
+  std::optional<Vec3> observer;
+  bool observer_at_source = false;
+  std::vector<std::string> detectors;           ///< kinds; replace the file's list
+  std::optional<int> bins;
+};
+
+/// Reads a scene file (.toml) or a bare mesh (.obj .ply .stl .off).
+/// Throws Error(input) with file:line[:column], the key, and what was expected.
+Scene load_scene(const std::string& path, const SceneOptions& options = {});
+
+/// Reads one mesh file; coordinates are multiplied by `length_unit_m`. Throws Error(input).
+std::shared_ptr<const Mesh> load_mesh(const std::string& path, double length_unit_m = 1.0);
+
+/// Checks a scene built by hand as load_scene() checks one from a file. Throws Error(input).
+void check_scene(const Scene& scene);
+
+/// What clray understood of a scene, for a person: components, materials, extents, light, detectors.
+std::string describe_scene(const Scene& scene);
+
+/// One line per row of a table: name, keys with default and range, meaning. kind: "brdf", "shape", "detector".
+/// Throws Error(usage) for another kind.
+std::string list_table(const std::string& kind);
+
+}  // namespace clray

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// What every analytic shape is given and gives. Portable subset (shared/portable.h). A shape lives in its local
+// frame (z its axis, see shape.def); stage/intersect.cl carries rays in and hits out.
+#ifndef CLRAY_SHAPE_H
+#define CLRAY_SHAPE_H
+
+#include "shared/abi.h"
+
+typedef struct ShapeSurface {
+  vec3 point;    // on the surface, refined (not merely o + t·d)
+  vec3 normal;   // unit, outward (facing +z for open plane shapes), either side may be hit
+  f64 error;     // bound of |computed point - exact surface|, m, in the local frame
+} ShapeSurface;
+
+// A shape X is one file shape/X.cl that defines, for parameters p in the order of its row:
+//   i32 shape_X_intersect(p, o, d, t_max, &t, &part)  nearest hit with 0 < t <= t_max of the ray o + t·d (d of unit
+//                                                    length to rounding): 1 and t and the part number, or 0
+//   ShapeSurface shape_X_surface(p, o, d, t, part)   point, normal and error of that hit
+//   f64 shape_X_support(p, u)                        max over the shape of x·u (any u): exact bounds come from it
+//   f64 shape_X_area(p)                              of one side, m²
+//   i32 shape_X_traits(p)                            CLRAY_SHAPE_CLOSED | CLRAY_SHAPE_CONVEX (its surface bounds a convex
+//                                                    body or lies in a plane) | CLRAY_SHAPE_PLANE (no ray leaving it can
+//                                                    hit it again)
+// with `const CLRAY_GLOBAL f64 *p`. A ray that starts on the outside, moved off by `error` along the normal, must not
+// hit the same spot again: signs of the constant term of a quadratic are to be exact there.
+#define CLRAY_SHAPE_CLOSED 1
+#define CLRAY_SHAPE_CONVEX 2
+#define CLRAY_SHAPE_PLANE 4
+
+#endif
