@@ -5,7 +5,10 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <glm/vec3.hpp>
+#include <limits>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -57,6 +60,7 @@ struct DelayResult {
   std::vector<std::uint64_t> hits;
   std::vector<std::uint8_t> resolved;
   double below_m2_per_sr = 0.0, above_m2_per_sr = 0.0;
+  std::vector<double> photons_per_ns;         ///< expected rate per bin at the station; empty without one
 };
 
 /// The one-pixel spectrometer: A in one band.
@@ -105,6 +109,8 @@ struct ErrorPoint {
   std::uint64_t rays = 0;                     ///< per orientation
   double seconds = 0.0;                       ///< of tracing, from the phase's start
   double relative_standard_error = 0.0;       ///< the largest over all targets; NaN if all totals are zero
+  double first_total = std::numeric_limits<double>::quiet_NaN();  ///< the first total of the result, in its unit:
+                                              ///< of delay, else spectrometer, else |C| of pressure; NaN if not kept
 };
 
 /// Failures, counted and never hidden; all are zero in a sound run.
@@ -142,17 +148,45 @@ struct Result {
   std::vector<ImageResult> image;             ///< of rgb and hyperspectral detectors
 };
 
+/// Files that another part adds to a result, and its entry in the summary.
+struct MoreFiles {
+  std::vector<std::string> names;             ///< written into the folder given
+  std::string summary_key, summary_json;      ///< an entry for summary.json, as JSON text; empty for none
+};
+
 /// How to write results.
 struct WriteOptions {
   bool plots = true;
   std::string command;                        ///< as typed, for the summary
   std::string reference_file;                 ///< a summary.json or delay.csv to measure the true error against
+  std::vector<std::string>* warnings = nullptr;  ///< receives what went wrong without harm (no gnuplot, …)
+  /// Called with the unfinished folder; what it writes there appears with the rest, or not at all.
+  std::vector<std::function<MoreFiles(const std::string& folder)>> more;
 };
 
 /// Writes summary.json, tables and pictures into `folder`, which appears (or is replaced) only whole.
 /// Returns the file names written. Throws Error(output).
 std::vector<std::string> write_result(const Result& result, const Scene& scene, const std::string& folder,
                                       const WriteOptions& options = {});
+
+/// Whether write_result() could put a result at `folder`: throws Error(output) where it could not, because something
+/// that is not a clray result stands there or the place cannot be written. Leaves nothing behind.
+void check_output(const std::string& folder);
+
+/// Totals to measure the true error against, by "detector/observer/variant/band/orientation".
+struct Reference {
+  std::string file;
+  std::map<std::string, double> totals;       ///< m²/sr, or m² for |C| of pressure
+};
+
+/// Reads a summary.json or a delay.csv. Throws Error(input).
+Reference load_reference(const std::string& file);
+
+/// The largest |total − reference| / |reference| over the totals that both have; NaN where they share none.
+double relative_true_error(const Result& result, const Reference& reference);
+
+/// "1.2345 ± 0.0012": a number rounded to two digits of its error, in powers of ten where that reads better.
+std::string format_with_error(double value, double error);
 
 /// Shots of a laser-ranging session over the motion of `scene`, from its delay results (PHYSICS section 5);
 /// written by write_result() where the scene has a station and a motion.
