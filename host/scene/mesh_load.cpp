@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+// load_mesh(): picks the reader by extension, scales to metres, triangulates, lets OpenMesh hold and measure the
+// mesh, and counts edges from the file's own indices. Every face of the file stays in the Mesh, in its order.
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+
+#include "scene/mesh_formats.hpp"
+#include "scene/mesh_soup.hpp"
+#include "scene/mesh_store.hpp"
+#include "scene/mesh_triangulate.hpp"
+#include "scene/obj_reader.hpp"
+
+namespace clray {
+
+namespace {
+
+// Beyond this, areas and the fp32 boxes of the tracer would overflow.
+constexpr double kMaxCoordinate_m = 1.0e15;
+
+class OpenFile {
+ public:
+  explicit OpenFile(const std::string& path) : handle(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {}
+  ~OpenFile() {
+    if (handle >= 0) ::close(handle);
+  }
+  const int handle;
+};
+
+void scale_to_metres(std::vector<Vec3>& vertices, double unit, const std::string& path) {
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    Vec3& v = vertices[i];
+    v *= unit;
+    if (!(std::fabs(v.x) <= kMaxCoordinate_m && std::fabs(v.y) <= kMaxCoordinate_m &&
+          std::fabs(v.z) <= kMaxCoordinate_m)) {
+      fail_input(
+          path, 0,
+          "vertex " + std::to_string(i + 1) + " lies beyond 1e15 m; a body in metres was expected (see --length-unit)");
+    }
+  }
+}
+
+void triangulate_faces(const PolygonSoup& soup, Mesh& mesh, const std::string& path) {
+  const std::size_t count = soup.corners.size() - 2 * soup.faces();
+  mesh.triangles.reserve(count);
+  mesh.triangle_slot.reserve(count);
+  std::vector<Vec3> points;
+  std::vector<std::array<std::uint32_t, 3>> local;
+  std::uint64_t crossing = 0, first_crossing = 0;
+  for (std::size_t f = 0; f < soup.faces(); ++f) {
+    const std::uint32_t* corner = soup.corners.data() + soup.first[f];
+    const std::size_t n = soup.face_end(f) - soup.first[f];
+    local.clear();
+    if (n == 3) {
+      local.push_back({0, 1, 2});
+    } else {
+      points.clear();
+      for (std::size_t i = 0; i < n; ++i) points.push_back(mesh.vertices[corner[i]]);
+      try {
+        if (triangulate(points, local) == Triangulation::crossing && crossing++ == 0) first_crossing = f + 1;
+      } catch (const Error& error) {
+        throw Error(error.code(), "face " + std::to_string(f + 1) + ": " + error.message(), path);
+      }
+    }
+    const std::uint32_t slot = soup.face_slot.empty() ? 0 : soup.face_slot[f];
+    for (const auto& t : local) {
+      mesh.triangles.push_back({corner[t[0]], corner[t[1]], corner[t[2]]});
+      mesh.triangle_slot.push_back(slot);
+    }
+  }
+  if (crossing > 0) {
+    mesh.warnings.push_back(path + ": " + std::to_string(crossing) +
+                            " polygons cross themselves or have no plane (first: face " +
+                            std::to_string(first_crossing) + "); they are fans from their first corner");
+  }
+}
+
+// An edge as one number: smaller vertex, larger vertex, direction.
+void count_edges(const PolygonSoup& soup, MeshReport& report) {
+  std::vector<std::uint64_t> keys;
+  keys.reserve(soup.corners.size());
+  for (std::size_t f = 0; f < soup.faces(); ++f) {
+    const std::size_t end = soup.face_end(f);
+    for (std::size_t i = soup.first[f]; i < end; ++i) {
+      const std::uint64_t a = soup.corners[i], b = soup.corners[i + 1 < end ? i + 1 : soup.first[f]];
+      if (a != b) keys.push_back(a < b ? a << 33 | b << 1 : b << 33 | a << 1 | 1);
+    }
+  }
+  std::sort(keys.begin(), keys.end());
+  for (std::size_t i = 0; i < keys.size();) {
+    std::size_t end = i + 1;
+    while (end < keys.size() && keys[end] >> 1 == keys[i] >> 1) ++end;
+    const std::size_t faces = end - i;
+    if (faces == 1) ++report.boundary_edges;
+    if (faces > 2 || (faces == 2 && keys[i] == keys[i + 1])) ++report.non_manifold_edges;
+    i = end;
+  }
+}
+
+std::string extension_of(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return extension;
+}
+
+PolygonSoup read_soup(const std::string& path) {
+  const std::string extension = extension_of(path);
+  if (extension == ".obj") return read_obj(path);
+  if (extension == ".ply" || extension == ".stl" || extension == ".off")
+    return read_with_openmesh(path, extension.substr(1));
+  fail_input(path, 0, "the extension '" + extension + "' is no mesh format; .obj, .ply, .stl or .off was expected");
+}
+
+}  // namespace
+
+std::string read_mesh_file(const std::string& path) {
+  const OpenFile file(path);
+  struct stat status {};
+  if (file.handle < 0 || ::fstat(file.handle, &status) != 0) {
+    fail_input(path, 0, std::string("cannot be read: ") + std::strerror(errno) + "; a readable file was expected");
+  }
+  if (S_ISDIR(status.st_mode)) fail_input(path, 0, "is a directory; a file was expected");
+  if (!S_ISREG(status.st_mode)) fail_input(path, 0, "is a device or pipe; a regular file was expected");
+  std::string content(static_cast<std::size_t>(status.st_size), '\0');
+  std::size_t done = 0;
+  while (done < content.size()) {
+    const ssize_t got = ::read(file.handle, &content[done], content.size() - done);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) fail_input(path, 0, std::string("cannot be read: ") + std::strerror(errno));
+    if (got == 0) break;
+    done += static_cast<std::size_t>(got);
+  }
+  content.resize(done);
+  if (content.empty()) fail_input(path, 1, "the file is empty; a mesh or a material library was expected");
+  return content;
+}
+
+std::shared_ptr<const Mesh> load_mesh(const std::string& path, double length_unit_m) {
+  if (!(length_unit_m > 0.0 && std::isfinite(length_unit_m))) {
+    fail_input(path, 0,
+               "a length unit of " + std::to_string(length_unit_m) + " m; a finite number above 0 was expected");
+  }
+  PolygonSoup soup = read_soup(path);
+  auto mesh = std::make_shared<Mesh>();
+  mesh->vertices = std::move(soup.vertices);
+  mesh->material_slots = std::move(soup.slots);
+  mesh->file_materials = std::move(soup.file_materials);
+  mesh->warnings = std::move(soup.warnings);
+  scale_to_metres(mesh->vertices, length_unit_m, path);
+  mesh->report.faces = soup.faces() + soup.collapsed;
+  count_edges(soup, mesh->report);
+  triangulate_faces(soup, *mesh, path);
+  const std::uint64_t collapsed = soup.collapsed;
+  soup = PolygonSoup();
+  const StoreReport store = store_and_measure(mesh->vertices, mesh->triangles);
+  mesh->report.triangles = mesh->triangles.size();
+  mesh->report.area_m2 = store.area_m2;
+  mesh->report.degenerate = store.degenerate + collapsed;
+  if (!(mesh->report.area_m2 > 0.0)) fail_input(path, 0, "all faces are without area; a surface was expected");
+  return mesh;
+}
+
+}  // namespace clray
