@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+// Small helpers about buffers and launches on an opened device. Sizes are in elements unless named bytes. Every
+// failure is a clray::Error(device).
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+#include "device/device_impl.hpp"
+
+namespace clray {
+
+/// An uninitialised buffer of `count` elements (of one where count is 0: OpenCL knows no empty buffer).
+template <class T>
+cl::Buffer make_buffer(OpenedDevice& opened, std::size_t count, cl_mem_flags flags = CL_MEM_READ_WRITE) {
+  return with_cl_errors(opened.info.name,
+                        [&] { return cl::Buffer(opened.context, flags, std::max<std::size_t>(count, 1) * sizeof(T)); });
+}
+
+/// Copies `values` into the buffer, from element `first` on; returns when done.
+template <class T>
+void write_buffer(OpenedDevice& opened, const cl::Buffer& buffer, const std::vector<T>& values, std::size_t first = 0) {
+  if (values.empty()) return;
+  with_cl_errors(opened.info.name, [&] {
+    opened.queue.enqueueWriteBuffer(buffer, CL_TRUE, first * sizeof(T), values.size() * sizeof(T), values.data());
+  });
+}
+
+/// A buffer that holds a copy of `values`.
+template <class T>
+cl::Buffer make_buffer(OpenedDevice& opened, const std::vector<T>& values, cl_mem_flags flags = CL_MEM_READ_ONLY) {
+  cl::Buffer buffer = make_buffer<T>(opened, values.size(), flags);
+  write_buffer(opened, buffer, values);
+  return buffer;
+}
+
+/// Sets `count` elements from the start to zero bytes (in queue order; does not wait).
+template <class T>
+void zero_buffer(OpenedDevice& opened, const cl::Buffer& buffer, std::size_t count) {
+  static_assert(sizeof(T) % 4 == 0, "filled by 32-bit words");
+  if (count == 0) return;
+  with_cl_errors(opened.info.name, [&] { opened.queue.enqueueFillBuffer(buffer, cl_uint{0}, 0, count * sizeof(T)); });
+}
+
+/// A buffer of `count` zeros.
+template <class T>
+cl::Buffer make_zero_buffer(OpenedDevice& opened, std::size_t count) {
+  cl::Buffer buffer = make_buffer<T>(opened, count);
+  zero_buffer<T>(opened, buffer, std::max<std::size_t>(count, 1));
+  return buffer;
+}
+
+/// `count` elements from element `first` on; waits for all work queued before.
+template <class T>
+std::vector<T> read_buffer(OpenedDevice& opened, const cl::Buffer& buffer, std::size_t count, std::size_t first = 0) {
+  std::vector<T> values(count);
+  if (count == 0) return values;
+  with_cl_errors(opened.info.name, [&] {
+    opened.queue.enqueueReadBuffer(buffer, CL_TRUE, first * sizeof(T), count * sizeof(T), values.data());
+  });
+  return values;
+}
+
+/// The kernel `name` of a program.
+inline cl::Kernel make_kernel(OpenedDevice& opened, const cl::Program& program, const char* name) {
+  return with_cl_errors(opened.info.name, [&] { return cl::Kernel(program, name); });
+}
+
+/// Sets all arguments of a kernel in order: buffers, cl::Local(bytes), and scalars or structs of exactly the kernel's
+/// type.
+template <class... Arguments>
+void set_arguments(OpenedDevice& opened, cl::Kernel& kernel, const Arguments&... arguments) {
+  with_cl_errors(opened.info.name, [&] {
+    cl_uint index = 0;
+    (kernel.setArg(index++, arguments), ...);
+  });
+}
+
+/// Queues a one-dimensional launch of at least `items` work-items in groups of `group` (the kernel checks its id
+/// against the count: the last group is full). The caller fixes `group`: some drivers compile once per local size.
+inline cl::Event launch(OpenedDevice& opened, const cl::Kernel& kernel, std::size_t items, std::size_t group) {
+  return with_cl_errors(opened.info.name, [&] {
+    cl::Event event;
+    const std::size_t global = (std::max<std::size_t>(items, 1) + group - 1) / group * group;
+    opened.queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(global), cl::NDRange(group), nullptr, &event);
+    return event;
+  });
+}
+
+/// Waits for a launch; the seconds it ran on the device.
+inline double seconds_of(OpenedDevice& opened, const cl::Event& event) {
+  return with_cl_errors(opened.info.name, [&] {
+    event.wait();
+    const cl_ulong start = event.getProfilingInfo<CL_PROFILING_COMMAND_START>();
+    const cl_ulong end = event.getProfilingInfo<CL_PROFILING_COMMAND_END>();
+    return 1e-9 * static_cast<double>(end - start);
+  });
+}
+
+/// Waits for everything queued.
+inline void finish(OpenedDevice& opened) {
+  with_cl_errors(opened.info.name, [&] { opened.queue.finish(); });
+}
+
+}  // namespace clray

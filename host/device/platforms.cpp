@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: Apache-2.0
+// The OpenCL platforms of this machine: enumeration, choice of a device, opening.
+#include "device/platforms.hpp"
+
+#include <fmt/format.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <functional>
+#include <mutex>
+
+#include "device/self_test.hpp"
+
+namespace clray {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr cl_device_type kCpuAndGpu = CL_DEVICE_TYPE_CPU | CL_DEVICE_TYPE_GPU;
+
+fs::path pocl_cache_folder() {
+  if (const char* folder = getenv("POCL_CACHE_DIR")) return folder;
+  if (const char* folder = getenv("XDG_CACHE_HOME")) return fs::path(folder) / "pocl" / "kcache";
+  if (const char* folder = getenv("HOME")) return fs::path(folder) / ".cache" / "pocl" / "kcache";
+  return "/tmp/pocl/kcache";
+}
+
+bool can_write_in(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  std::string name = (folder / "clray-probe-XXXXXX").string();
+  const int file = mkstemp(name.data());
+  if (file < 0) return false;
+  const bool written = write(file, "clray", 5) == 5;
+  close(file);
+  unlink(name.c_str());
+  return written;
+}
+
+std::string& private_cache() {
+  static std::string folder;
+  return folder;
+}
+
+void remove_private_cache() {
+  std::error_code ignored;
+  fs::remove_all(private_cache(), ignored);
+}
+
+void prepare_environment_once() {
+  setenv("POCL_SIGFPE_HANDLER", "0", 1);
+  if (can_write_in(pocl_cache_folder())) return;
+  std::error_code error;
+  std::string name = (fs::temp_directory_path(error) / "clray-kernels-XXXXXX").string();
+  if (error || !mkdtemp(name.data())) return;  // PoCL alone needs the folder, and will say that a build failed
+  private_cache() = name;
+  setenv("POCL_CACHE_DIR", name.c_str(), 1);
+  atexit(remove_private_cache);
+}
+
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text;
+}
+
+bool contains(const std::string& text, const std::string& part) {
+  return lower(text).find(lower(part)) != std::string::npos;
+}
+
+bool has_extension(const cl::Device& device, const std::string& name) {
+  const std::string all = " " + device.getInfo<CL_DEVICE_EXTENSIONS>() + " ";
+  return all.find(" " + name + " ") != std::string::npos;
+}
+
+std::string without_nul(std::string text) {
+  text.erase(std::find(text.begin(), text.end(), '\0'), text.end());
+  return text;
+}
+
+FoundDevice describe(const std::string& platform, const cl::Device& device) {
+  FoundDevice found;
+  found.device = device;
+  found.type = device.getInfo<CL_DEVICE_TYPE>();
+  DeviceInfo& info = found.info;
+  info.name = without_nul(device.getInfo<CL_DEVICE_NAME>());
+  info.platform = platform;
+  info.vendor = without_nul(device.getInfo<CL_DEVICE_VENDOR>());
+  info.driver = without_nul(device.getInfo<CL_DRIVER_VERSION>());
+  info.version = without_nul(device.getInfo<CL_DEVICE_VERSION>());
+  info.type = device_type_name(found.type);
+  info.compute_units = device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
+  info.memory_GiB = static_cast<double>(device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>()) / 1073741824.0;
+  info.fp64 = has_extension(device, "cl_khr_fp64") && (device.getInfo<CL_DEVICE_DOUBLE_FP_CONFIG>() & CL_FP_FMA) != 0;
+  info.int64_atomics = has_extension(device, "cl_khr_int64_base_atomics");
+  return found;
+}
+
+std::string names_of(const std::vector<FoundDevice>& devices) {
+  std::string text;
+  for (const auto& found : devices) {
+    text += fmt::format("{}{} {} ({}, {})", text.empty() ? "" : "; ", found.info.index, found.info.name,
+                        found.info.type, found.info.platform);
+  }
+  return text;
+}
+
+Error none_such(const std::vector<FoundDevice>& devices, const std::string& what) {
+  return Error(ErrorCode::device, fmt::format("there is no {}; there is: {}", what, names_of(devices)));
+}
+
+std::vector<FoundDevice> select(const std::vector<FoundDevice>& devices,
+                                const std::function<bool(const FoundDevice&)>& fits) {
+  std::vector<FoundDevice> chosen;
+  std::copy_if(devices.begin(), devices.end(), std::back_inserter(chosen), fits);
+  return chosen;
+}
+
+/// Devices of that type, those that can compute in fp64 first; a device that is nothing else before one that claims
+/// to be CPU and GPU at once.
+std::vector<FoundDevice> of_type(const std::vector<FoundDevice>& devices, cl_device_type type, bool also_both) {
+  auto chosen = select(devices, [&](const FoundDevice& found) {
+    return (found.type & type) != 0 && (also_both || (found.type & kCpuAndGpu) != kCpuAndGpu);
+  });
+  std::stable_sort(chosen.begin(), chosen.end(), [](const FoundDevice& a, const FoundDevice& b) {
+    const auto rank = [](const FoundDevice& x) {
+      return ((x.type & kCpuAndGpu) == kCpuAndGpu ? 2 : 0) + (x.info.fp64 ? 0 : 1);
+    };
+    return rank(a) < rank(b);
+  });
+  return chosen;
+}
+
+FoundDevice by_default(const std::vector<FoundDevice>& devices) {
+  for (const cl_device_type type : {CL_DEVICE_TYPE_GPU, CL_DEVICE_TYPE_CPU}) {
+    const auto chosen = of_type(devices, type, false);
+    if (!chosen.empty() && chosen.front().info.fp64) return chosen.front();
+  }
+  throw Error(ErrorCode::device,
+              "no GPU or CPU device with double precision (fp64); choose one by name or index: " + names_of(devices));
+}
+
+std::vector<FoundDevice> by_name(const std::vector<FoundDevice>& devices, const std::string& choice) {
+  const auto exact = select(devices, [&](const FoundDevice& found) { return found.info.name == choice; });
+  if (!exact.empty()) return {exact.front()};
+  const auto fitting = select(devices, [&](const FoundDevice& found) {
+    return contains(found.info.name, choice) || contains(found.info.platform, choice);
+  });
+  if (fitting.empty()) throw none_such(devices, fmt::format("device called '{}'", choice));
+  for (const auto& found : fitting) {
+    if (found.info.name != fitting.front().info.name) {
+      throw Error(ErrorCode::device,
+                  fmt::format("'{}' fits several devices; choose one: {}", choice, names_of(fitting)));
+    }
+  }
+  return {fitting.front()};
+}
+
+}  // namespace
+
+void prepare_environment() {
+  static std::once_flag once;
+  std::call_once(once, prepare_environment_once);
+}
+
+std::string device_type_name(cl_device_type type) {
+  std::string text;
+  const auto add = [&](cl_device_type bit, const char* name) {
+    if (type & bit) text += (text.empty() ? "" : "+") + std::string(name);
+  };
+  add(CL_DEVICE_TYPE_CPU, "cpu");
+  add(CL_DEVICE_TYPE_GPU, "gpu");
+  add(CL_DEVICE_TYPE_ACCELERATOR, "accelerator");
+  add(CL_DEVICE_TYPE_CUSTOM, "custom");
+  return text.empty() ? "unknown" : text;
+}
+
+std::vector<FoundDevice> find_devices() {
+  prepare_environment();
+  std::vector<cl::Platform> platforms;
+  try {
+    cl::Platform::get(&platforms);
+  } catch (const cl::Error& error) {
+    constexpr cl_int kNoPlatform = -1001;
+    if (error.err() != kNoPlatform) throw cl_error(error, "OpenCL");
+  }
+  std::vector<FoundDevice> all;
+  for (const auto& platform : platforms) {
+    std::vector<cl::Device> devices;
+    try {
+      platform.getDevices(CL_DEVICE_TYPE_ALL, &devices);
+      const std::string name = without_nul(platform.getInfo<CL_PLATFORM_NAME>());
+      for (const auto& device : devices) all.push_back(describe(name, device));
+    } catch (const cl::Error&) {
+      continue;  // a platform without devices, or one whose driver does not answer, is not there for us
+    }
+  }
+  std::stable_sort(all.begin(), all.end(),
+                   [](const FoundDevice& a, const FoundDevice& b) { return a.info.platform < b.info.platform; });
+  for (std::size_t i = 0; i < all.size(); ++i) all[i].info.index = static_cast<int>(i);
+  return all;
+}
+
+std::vector<FoundDevice> choose_devices(const std::vector<FoundDevice>& devices, const std::string& choice) {
+  if (devices.empty()) {
+    throw Error(ErrorCode::device,
+                "no OpenCL device found; for the CPU install the packages ocl-icd-libopencl1 and pocl-opencl-icd, "
+                "for a GPU its vendor's OpenCL driver");
+  }
+  std::vector<FoundDevice> chosen;
+  if (choice.empty()) {
+    chosen = {by_default(devices)};
+  } else if (choice == "cpu" || choice == "gpu") {
+    chosen = of_type(devices, choice == "cpu" ? CL_DEVICE_TYPE_CPU : CL_DEVICE_TYPE_GPU, true);
+    if (chosen.empty()) throw none_such(devices, choice == "cpu" ? "CPU device" : "GPU device");
+    chosen.resize(1);
+  } else if (choice == "all") {
+    chosen = select(devices, [](const FoundDevice& found) {
+      return found.info.fp64 && (found.type & kCpuAndGpu) != 0 && (found.type & kCpuAndGpu) != kCpuAndGpu;
+    });
+    if (chosen.empty()) chosen = {by_default(devices)};
+  } else if (choice.size() < 6 &&
+             std::all_of(choice.begin(), choice.end(), [](char c) { return c >= '0' && c <= '9'; })) {
+    const auto index = static_cast<std::size_t>(std::stoul(choice));
+    if (index >= devices.size()) throw none_such(devices, "device " + choice);
+    chosen = {devices[index]};
+  } else {
+    chosen = by_name(devices, choice);
+  }
+  for (const auto& found : chosen) {
+    if (!found.info.fp64) {
+      throw Error(ErrorCode::device, "the device lacks double precision (fp64), which clray needs", found.info.name);
+    }
+  }
+  return chosen;
+}
+
+OpenedDevice open_device(const FoundDevice& found) {
+  struct Quirk {
+    const char *platform, *device, *define;
+  };
+  static const Quirk quirks[] = {
+#define QUIRK(platform, device, define, why) {platform, device, #define},
+#include "device/quirks.def"
+#undef QUIRK
+  };
+  return with_cl_errors(found.info.name, [&] {
+    OpenedDevice opened;
+    opened.info = found.info;
+    opened.device = found.device;
+    opened.context = cl::Context(found.device);
+    opened.queue = cl::CommandQueue(opened.context, found.device, CL_QUEUE_PROFILING_ENABLE);
+    for (const auto& quirk : quirks) {
+      if (contains(found.info.platform, quirk.platform) && contains(found.info.name, quirk.device)) {
+        opened.defines[quirk.define] = "1";
+      }
+    }
+    if (!found.info.int64_atomics) opened.defines["CLRAY_NO_INT64_ATOMICS"] = "1";
+    opened.int64_atomics = opened.defines.count("CLRAY_NO_INT64_ATOMICS") == 0;
+    return opened;
+  });
+}
+
+std::vector<DeviceInfo> list_devices() {
+  std::vector<DeviceInfo> list;
+  for (const auto& found : find_devices()) list.push_back(found.info);
+  return list;
+}
+
+Device::Device(const std::string& choice) : impl_(std::make_unique<Impl>()) {
+  for (const auto& found : choose_devices(find_devices(), choice)) {
+    impl_->devices.push_back(open_device(found));
+    run_self_test(impl_->devices.back());
+  }
+}
+Device::~Device() = default;
+Device::Device(Device&&) noexcept = default;
+Device& Device::operator=(Device&&) noexcept = default;
+
+const DeviceInfo& Device::info() const {
+  return impl_->devices.front().info;
+}
+
+}  // namespace clray
