@@ -14,7 +14,7 @@ typedef struct ShapeSurface {
 
 // A shape X is one file shape/X.cl that defines, for parameters p in the order of its row:
 //   i32 shape_X_intersect(p, o, d, t_max, &t, &part)  nearest hit with 0 < t <= t_max of the ray o + t·d (d of unit
-//                                                    length to rounding): 1 and t and the part number, or 0
+//                                                    length to rounding): 1 and t and the part (u32), or 0
 //   ShapeSurface shape_X_surface(p, o, d, t, part)   point, normal and error of that hit
 //   f64 shape_X_support(p, u)                        max over the shape of x·u (any u): exact bounds come from it
 //   f64 shape_X_area(p)                              of one side, m²
@@ -22,7 +22,9 @@ typedef struct ShapeSurface {
 //                                                    body or lies in a plane) | CLRAY_SHAPE_PLANE (no ray leaving it can
 //                                                    hit it again)
 // with `const CLRAY_GLOBAL f64 *p`. A ray that starts on the outside, moved off by `error` along the normal, must not
-// hit the same spot again: signs of the constant term of a quadratic are to be exact there.
+// hit the same spot again: signs of the constant term of a quadratic are to be exact there. `error` therefore also
+// covers the rounding of point ± normal·error and of the next test; carrying points between frames is the caller's.
+// Parts: 0 side, 1 bottom, 2 top; a box has 0 to 5 for -x +x -y +y -z +z.
 #define CLRAY_SHAPE_CLOSED 1
 #define CLRAY_SHAPE_CONVEX 2
 #define CLRAY_SHAPE_PLANE 4
