@@ -2,11 +2,19 @@
 // From a scene's motion to the orientations that are traced: light and observers in the body frame at each step.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "clray/result.hpp"
 
 namespace clray {
+
+/// Where a motion has too many steps to hold.
+constexpr double kMaxOrientations = 1e7;
+
+/// Steps of a motion: spin has one at start_s and one after each full step up to and including stop_s; a table one at
+/// start_s and one per entry after it up to stop_s (all entries where both are 0). Throws Error(input) if too many.
+std::size_t orientation_count(const Motion& motion);
 
 /// One entry per step of the motion (one, the identity, without motion). Whole turns are removed before any
 /// trigonometry, which is clray's own (shared/elementary.h), so the result has the same bits on every host.

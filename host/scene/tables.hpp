@@ -11,25 +11,33 @@ namespace clray {
 /// One key of a row, e.g. "rho 0.5 [0,1] diffuse reflectance".
 struct TableKey {
   std::string name;
-  double default_value = 0.0;     ///< NaN: not given
-  std::string default_key;        ///< not empty: the default is the value of this earlier key
-  double low = 0.0, high = 0.0;   ///< infinite where open
+  double default_value = 0.0;    ///< NaN: not given
+  std::string default_key;       ///< not empty: the default is the value of this earlier key
+  double low = 0.0, high = 0.0;  ///< infinite where open
   bool low_included = true, high_included = true;
-  bool is_switch = false;         ///< range written {0,1}
-  std::string range;              ///< as written, for messages
+  bool is_switch = false;  ///< range written {0,1}
+  bool is_whole = false;   ///< range written [a..b]: whole numbers
+  std::string range;       ///< as written, for messages
   std::string meaning;
 };
 
 struct TableRow {
-  std::string id;                 ///< identifier: the kernel file's stem
-  std::string name;               ///< scene-file name
-  std::string side;               ///< detectors: "beam" or "pixel"
+  std::string id;    ///< identifier: the kernel file's stem
+  std::string name;  ///< scene-file name
+  std::string side;  ///< detectors: "beam" or "pixel"
   std::vector<TableKey> keys;
   std::string meaning;
 };
 
 /// Rows in the order of the file, which is the number kernels know them by. kind: "brdf", "shape", "detector".
 const std::vector<TableRow>& table(const std::string& kind);
+
+/// One row from its texts, as written in a .def file. Throws Error(bug) where it is malformed.
+TableRow parse_row(const std::string& id, const std::string& name, const std::string& side, const std::string& keys,
+                   const std::string& meaning);
+
+/// Whether `value` may be given for `key`; if not, `expected` says what may ("a whole number in [1..1e7]").
+bool key_accepts(const TableKey& key, double value, std::string* expected = nullptr);
 
 /// Row number by scene-file name, or -1.
 int table_index(const std::string& kind, const std::string& name);

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+// load_scene(): a scene file or a bare mesh, then what the command line says, then the checks. A bare mesh is seen
+// from +z by a monostatic 532 nm station with the detector `delay`, Lambert rho = 0.5 where no MTL speaks.
+#include "clray/scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "clray/error.hpp"
+#include "scene/material.hpp"
+#include "scene/scene_parts.hpp"
+#include "scene/tables.hpp"
+
+namespace clray {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string extension_of(const std::string& path) {
+  std::string extension = fs::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : static_cast<char>(c);
+  });
+  return extension;
+}
+
+Scene bare_mesh(const std::string& path, const SceneOptions& options) {
+  Scene scene;
+  scene.path = path;
+  scene.name = fs::path(path).stem().string();
+  Component component;
+  component.name = scene.name;
+  component.mesh = load_mesh(path, options.length_unit_m > 0.0 ? options.length_unit_m : 1.0);
+  scene.warnings = component.mesh->warnings;
+  assign_materials(&scene, 0, &component, {}, "");
+  scene.components.push_back(std::move(component));
+  return scene;
+}
+
+Vec3 option_direction(const Vec3& v, const std::string& option) {
+  const double largest = std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
+  if (!std::isfinite(v.x) || !std::isfinite(v.y) || !std::isfinite(v.z) || largest == 0.0) {
+    throw Error(ErrorCode::usage, "expected three finite numbers X,Y,Z that are not all zero", option);
+  }
+  const Vec3 u(v.x / largest, v.y / largest, v.z / largest);
+  const double length = std::sqrt(u.x * u.x + u.y * u.y + u.z * u.z);
+  return {u.x / length, u.y / length, u.z / length};
+}
+
+/// The kinds asked for; a kind that the file has too keeps the file's options.
+void apply_detectors(const SceneOptions& options, Scene* scene) {
+  if (!options.detectors.empty()) {
+    std::vector<DetectorSpec> chosen;
+    for (const std::string& kind : options.detectors) {
+      if (table_index("detector", kind) < 0) {
+        std::string known;
+        for (const std::string& name : row_names("detector")) known += (known.empty() ? "" : ", ") + name;
+        throw Error(
+            ErrorCode::usage,
+            "unknown detector '" + kind + "'; expected one of " + known + did_you_mean(kind, row_names("detector")),
+            "--detector");
+      }
+      const std::size_t before = chosen.size();
+      const bool again =
+          std::any_of(chosen.begin(), chosen.end(), [&](const DetectorSpec& d) { return d.kind == kind; });
+      if (again) continue;
+      for (const DetectorSpec& d : scene->detectors) {
+        if (d.kind == kind) chosen.push_back(d);
+      }
+      if (chosen.size() == before) chosen.push_back({kind, kind, {}});
+    }
+    scene->detectors = chosen;
+  }
+  if (scene->detectors.empty()) scene->detectors.push_back({"delay", "delay", {}});
+  if (!options.bins) return;
+  bool used = false;
+  for (DetectorSpec& d : scene->detectors) {
+    if (d.kind != "delay") continue;
+    d.parameters["bins"] = *options.bins;
+    d.parameters.erase("bin_ps");
+    used = true;
+  }
+  if (!used) throw Error(ErrorCode::usage, "needs a delay detector", "--bins");
+  const TableKey& key = table("detector")[static_cast<std::size_t>(table_index("detector", "delay"))].keys[0];
+  std::string expected;
+  if (!key_accepts(key, *options.bins, &expected)) throw Error(ErrorCode::usage, "expected " + expected, "--bins");
+}
+
+void apply_options(const SceneOptions& options, Scene* scene) {
+  if (!options.material.empty()) {
+    scene->materials = {parse_material(options.material)};
+    for (Component& c : scene->components) c.materials.assign(c.materials.size(), 0);
+    if (!scene->variants.empty()) scene->warnings.push_back("--material overrides the variants of the scene");
+    scene->variants.clear();
+  }
+  if (options.source) scene->source.direction = option_direction(*options.source, "--source");
+  if (options.observer) {
+    Observer observer;
+    observer.direction = option_direction(*options.observer, "--observer");
+    observer.monostatic = false;
+    if (scene->observers.size() == 1) observer.acceptance_rad = scene->observers[0].acceptance_rad;
+    scene->observers = {observer};
+  }
+  if (options.observer_at_source || scene->observers.empty()) scene->observers = {Observer{}};
+  for (Observer& o : scene->observers) {
+    if (o.monostatic) o.direction = scene->source.direction;
+  }
+  apply_detectors(options, scene);
+}
+
+}  // namespace
+
+std::vector<std::string> row_names(const std::string& kind) {
+  std::vector<std::string> names;
+  for (const TableRow& row : table(kind)) names.push_back(row.name);
+  return names;
+}
+
+Scene load_scene(const std::string& path, const SceneOptions& options) {
+  if (!(options.length_unit_m >= 0.0 && std::isfinite(options.length_unit_m))) {
+    throw Error(ErrorCode::usage, "expected a positive number of metres", "--length-unit");
+  }
+  const std::string extension = extension_of(path);
+  const bool mesh = extension == ".obj" || extension == ".ply" || extension == ".stl" || extension == ".off";
+  if (!mesh && extension != ".toml") {
+    throw Error(ErrorCode::input, "expected a scene file (.toml) or a mesh (.obj .ply .stl .off)", path);
+  }
+  std::error_code error;
+  if (!fs::is_regular_file(path, error)) throw Error(ErrorCode::input, "there is no such file", path);
+  Scene scene = mesh ? bare_mesh(path, options) : read_scene_file(path, options);
+  apply_options(options, &scene);
+  check_scene(scene);
+  return scene;
+}
+
+}  // namespace clray

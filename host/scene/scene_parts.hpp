@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// The sections of a scene file, one reader each, and the checks that they share with scenes built by hand.
+#pragma once
+
+#include <string>
+
+#include "clray/scene.hpp"
+#include "scene/toml_reader.hpp"
+
+namespace clray {
+
+/// Reads a scene file into a scene, all of it but what the command line adds.
+Scene read_scene_file(const std::string& path, const SceneOptions& options);
+
+/// [[component]] tables: shapes, meshes (shared by file), transforms, hinges, materials.
+void read_components(TomlTable& root, double length_unit_m, Scene* scene);
+
+void read_source(TomlTable& root, Scene* scene);
+void read_observers(TomlTable& root, Scene* scene);
+void read_motion(TomlTable& root, Scene* scene);
+void read_station(TomlTable& root, Scene* scene);
+void read_detectors(TomlTable& root, Scene* scene);
+void read_trace(TomlTable& root, Scene* scene);
+
+/// What is wrong with a shape's parameters taken together, or "".
+std::string shape_fault(const Component& component);
+
+/// What is wrong with a detector's parameters taken together, or "".
+std::string detector_fault(const DetectorSpec& detector);
+
+/// What is wrong with a source (bands that it has no light in), or "".
+std::string source_fault(const Source& source);
+
+/// Names of the rows of a table.
+std::vector<std::string> row_names(const std::string& kind);
+
+}  // namespace clray

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+// Spectra and sources. A black body's share in a band is the integral of x³/(eˣ−1) over x = hc/(λkT), divided by
+// π⁴/15 (Planck 1901), by composite Gauss-Legendre quadrature of five points on panels of at most 0.25 in x: its
+// error there is below 1e-18 of the integrand, and narrow bands do not suffer the cancellation of a difference of
+// two tails. Constants are the SI's of 2019.
+#include "scene/spectrum.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "shared/elementary.h"
+
+namespace clray {
+namespace {
+
+constexpr double kPlanck_J_s = 6.62607015e-34, kLight_m_s = 299792458.0, kBoltzmann_J_K = 1.380649e-23;
+constexpr double kSun_K = 5772.0;
+/// Beyond this x the integrand is below the smallest normal number.
+constexpr double kLargest = 700.0;
+
+/// Exact integral of the piecewise linear function over [low, high] inside the table.
+double integral_inside(const Spectrum& s, double low, double high) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i + 1 < s.wavelength_nm.size(); ++i) {
+    const double a = std::max(low, s.wavelength_nm[i]), b = std::min(high, s.wavelength_nm[i + 1]);
+    if (a < b) sum += 0.5 * (b - a) * (spectrum_at(s, a) + spectrum_at(s, b));
+  }
+  return sum;
+}
+
+double planck(double x) {
+  return x * x * x / el_expm1(x);
+}
+
+/// Integral of x³/(eˣ−1) over [low, high].
+double planck_integral(double low, double high) {
+  high = std::min(high, kLargest);
+  if (!(low < high)) return 0.0;
+  // Nodes and weights of the five-point rule on [-1, 1] in closed form.
+  const double near = std::sqrt(5.0 - 2.0 * std::sqrt(10.0 / 7.0)) / 3.0;
+  const double far = std::sqrt(5.0 + 2.0 * std::sqrt(10.0 / 7.0)) / 3.0;
+  const double near_weight = (322.0 + 13.0 * std::sqrt(70.0)) / 900.0;
+  const double far_weight = (322.0 - 13.0 * std::sqrt(70.0)) / 900.0;
+  const double panels = std::ceil((high - low) / 0.25);
+  const double half = 0.5 * (high - low) / panels;
+  double sum = 0.0;
+  for (double i = panels - 1.0; i >= 0.0; i -= 1.0) {  // small terms first
+    const double middle = low + (2.0 * i + 1.0) * half;
+    sum += half * (128.0 / 225.0 * planck(middle) +
+                   near_weight * (planck(middle - near * half) + planck(middle + near * half)) +
+                   far_weight * (planck(middle - far * half) + planck(middle + far * half)));
+  }
+  return sum;
+}
+
+/// hc/(λkT)
+double planck_x(double wavelength_nm, double temperature_K) {
+  return kPlanck_J_s * kLight_m_s / kBoltzmann_J_K / (wavelength_nm * 1e-9 * temperature_K);
+}
+
+double temperature_of(const Source& source) {
+  return source.blackbody_K > 0.0 ? source.blackbody_K : kSun_K;
+}
+
+double planck_share_per_unit() {
+  return 15.0 / (CLRAY_PI * CLRAY_PI * CLRAY_PI * CLRAY_PI);
+}
+
+}  // namespace
+
+double spectrum_at(const Spectrum& spectrum, double wavelength_nm) {
+  const std::vector<double>& x = spectrum.wavelength_nm;
+  const std::vector<double>& y = spectrum.value;
+  if (wavelength_nm <= x.front()) return y.front();
+  if (wavelength_nm >= x.back()) return y.back();
+  const std::size_t i = static_cast<std::size_t>(std::upper_bound(x.begin(), x.end(), wavelength_nm) - x.begin());
+  const double t = (wavelength_nm - x[i - 1]) / (x[i] - x[i - 1]);
+  return (1.0 - t) * y[i - 1] + t * y[i];
+}
+
+double spectrum_mean(const Spectrum& spectrum, double low_nm, double high_nm) {
+  if (!(low_nm < high_nm)) return spectrum_at(spectrum, low_nm);
+  const double first = spectrum.wavelength_nm.front(), last = spectrum.wavelength_nm.back();
+  const double before = std::max(0.0, std::min(high_nm, first) - low_nm);
+  const double after = std::max(0.0, high_nm - std::max(low_nm, last));
+  const double inside = integral_inside(spectrum, low_nm, high_nm);
+  return (inside + before * spectrum.value.front() + after * spectrum.value.back()) / (high_nm - low_nm);
+}
+
+double source_band_W_m2(const Source& source, const Band& band) {
+  if (source.kind == Source::Kind::laser) {
+    return band.low_nm <= source.wavelength_nm && source.wavelength_nm <= band.high_nm ? 1.0 : 0.0;
+  }
+  if (source.spectrum && source.blackbody_K <= 0.0) return integral_inside(*source.spectrum, band.low_nm, band.high_nm);
+  const double temperature = temperature_of(source);
+  const double low = planck_x(band.high_nm, temperature), high = planck_x(band.low_nm, temperature);
+  return source.irradiance_W_m2 * planck_share_per_unit() * planck_integral(low, high);
+}
+
+double source_spectral_W_m2_nm(const Source& source, double wavelength_nm) {
+  if (source.kind == Source::Kind::laser) return 0.0;
+  if (source.spectrum && source.blackbody_K <= 0.0) {
+    const Spectrum& s = *source.spectrum;
+    const bool inside = wavelength_nm >= s.wavelength_nm.front() && wavelength_nm <= s.wavelength_nm.back();
+    return inside ? spectrum_at(s, wavelength_nm) : 0.0;
+  }
+  const double x = planck_x(wavelength_nm, temperature_of(source));
+  if (x > kLargest) return 0.0;
+  return source.irradiance_W_m2 * planck_share_per_unit() * planck(x) * x / wavelength_nm;
+}
+
+Band make_band(double low_nm, double high_nm) {
+  const std::string name = low_nm == high_nm ? fmt::format("{}", low_nm) : fmt::format("{}-{}", low_nm, high_nm);
+  return {name, low_nm, high_nm};
+}
+
+std::vector<Band> bands_of(const Scene& scene) {
+  const Source& source = scene.source;
+  if (source.kind == Source::Kind::laser) return {make_band(source.wavelength_nm, source.wavelength_nm)};
+  if (!source.bands.empty()) return source.bands;
+  return {make_band(400.0, 700.0)};
+}
+
+}  // namespace clray

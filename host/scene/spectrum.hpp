@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// Quantities against wavelength: values and exact means of tables, the light of a source within a band, and the
+// bands of a scene. Wavelengths in nm, irradiance in W/m².
+#pragma once
+
+#include <vector>
+
+#include "clray/scene.hpp"
+
+namespace clray {
+
+/// Value at a wavelength: linear between points, constant beyond them.
+double spectrum_at(const Spectrum& spectrum, double wavelength_nm);
+
+/// Mean over [low, high], the exact integral of the piecewise linear function; the value where low == high.
+double spectrum_mean(const Spectrum& spectrum, double low_nm, double high_nm);
+
+/// Irradiance of the source within a band, W/m². A laser has unit irradiance, all of it in its line: 1 if the band
+/// holds wavelength_nm (ends included), else 0. A sun is its spectrum table (nothing beyond its ends), else a black
+/// body of blackbody_K (5772 K unless given) scaled to irradiance_W_m2 over all wavelengths.
+double source_band_W_m2(const Source& source, const Band& band);
+
+/// Spectral irradiance of a sun at a wavelength, W/m²/nm; zero for a laser, which has a line.
+double source_spectral_W_m2_nm(const Source& source, double wavelength_nm);
+
+/// The bands of the source: a laser's line as one band of no width, a sun's own bands, or 400-700 nm.
+std::vector<Band> bands_of(const Scene& scene);
+
+/// A band named by its range, "400-500", or "532" if it has no width.
+Band make_band(double low_nm, double high_nm);
+
+}  // namespace clray

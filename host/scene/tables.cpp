@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reads the rows of brdf.def, shape.def and detector.def, compiled in, into data that the scene reader, the checks,
+// the listings and the packer share. A row that cannot be read is a fault of clray, not of a scene.
+#include "scene/tables.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+#include "clray/error.hpp"
+
+namespace clray {
+namespace {
+
+struct RawRow {
+  const char* id;
+  const char* name;
+  const char* side;
+  const char* keys;
+  const char* meaning;
+};
+
+const RawRow kBrdfRows[] = {
+#define BRDF(id, name, keys, meaning) {#id, name, "", keys, meaning},
+#include "brdf/brdf.def"
+#undef BRDF
+};
+const RawRow kShapeRows[] = {
+#define SHAPE(id, name, keys, meaning) {#id, name, "", keys, meaning},
+#include "shape/shape.def"
+#undef SHAPE
+};
+const RawRow kDetectorRows[] = {
+#define DETECTOR(id, name, side, keys, meaning) {#id, name, #side, keys, meaning},
+#include "detector/detector.def"
+#undef DETECTOR
+};
+
+[[noreturn]] void malformed(const std::string& row, const std::string& what) {
+  throw Error(ErrorCode::bug, "malformed table row: " + what, row);
+}
+
+bool to_number(const std::string& text, double* value) {
+  const bool negative = !text.empty() && text[0] == '-';
+  const std::string size = negative ? text.substr(1) : text;
+  if (size == "inf") {
+    *value = negative ? -std::numeric_limits<double>::infinity() : std::numeric_limits<double>::infinity();
+    return true;
+  }
+  const auto end = text.data() + text.size();
+  const auto read = std::from_chars(text.data(), end, *value);
+  return read.ec == std::errc() && read.ptr == end && std::isfinite(*value);
+}
+
+/// The next word of `text` from `at`, which moves behind it.
+std::string next_word(const std::string& text, std::size_t* at) {
+  const std::size_t begin = text.find_first_not_of(' ', *at);
+  if (begin == std::string::npos) {
+    *at = text.size();
+    return {};
+  }
+  const std::size_t end = std::min(text.find(' ', begin), text.size());
+  *at = end;
+  return text.substr(begin, end - begin);
+}
+
+void parse_range(const std::string& row, TableKey* key) {
+  const std::string& range = key->range;
+  if (range == "{0,1}") {
+    key->is_switch = true;
+    key->low = 0.0;
+    key->high = 1.0;
+    return;
+  }
+  if (range.size() < 5) malformed(row, "range '" + range + "' of key '" + key->name + "'");
+  const std::size_t dots = range.find("..");
+  const std::size_t middle = dots != std::string::npos ? dots : range.find(',');
+  const char open = range.front(), close = range.back();
+  const bool brackets = (open == '[' || open == '(') && (close == ']' || close == ')');
+  if (middle == std::string::npos || !brackets) malformed(row, "range '" + range + "' of key '" + key->name + "'");
+  const std::size_t after = middle + (dots != std::string::npos ? 2 : 1);
+  if (!to_number(range.substr(1, middle - 1), &key->low) ||
+      !to_number(range.substr(after, range.size() - after - 1), &key->high) || !(key->low < key->high)) {
+    malformed(row, "range '" + range + "' of key '" + key->name + "'");
+  }
+  key->is_whole = dots != std::string::npos;
+  key->low_included = open == '[';
+  key->high_included = close == ']';
+}
+
+TableKey parse_key(const TableRow& row, const std::string& text) {
+  std::size_t at = 0;
+  TableKey key;
+  key.name = next_word(text, &at);
+  const std::string default_word = next_word(text, &at);
+  key.range = next_word(text, &at);
+  const std::size_t rest = text.find_first_not_of(' ', at);
+  if (rest == std::string::npos) malformed(row.id, "key '" + text + "' needs a name, default, range and meaning");
+  key.meaning = text.substr(rest);
+  parse_range(row.id, &key);
+  for (const TableKey& other : row.keys) {
+    if (other.name == key.name) malformed(row.id, "key '" + key.name + "' occurs twice");
+    if (other.name == default_word) key.default_key = default_word;
+  }
+  if (!key.default_key.empty()) return key;
+  if (default_word == "nan") {
+    key.default_value = std::numeric_limits<double>::quiet_NaN();
+  } else if (!to_number(default_word, &key.default_value)) {
+    malformed(row.id, "default '" + default_word + "' of key '" + key.name + "' is no number and no earlier key");
+  } else if (!key_accepts(key, key.default_value)) {
+    malformed(row.id, "default of key '" + key.name + "' is outside " + key.range);
+  }
+  return key;
+}
+
+template <std::size_t N>
+std::vector<TableRow> parse_rows(const RawRow (&raw)[N]) {
+  std::vector<TableRow> rows;
+  for (const RawRow& r : raw) {
+    rows.push_back(parse_row(r.id, r.name, r.side, r.keys, r.meaning));
+    for (std::size_t i = 0; i + 1 < rows.size(); ++i) {
+      if (rows[i].id == rows.back().id || rows[i].name == rows.back().name) malformed(r.id, "row occurs twice");
+    }
+  }
+  return rows;
+}
+
+}  // namespace
+
+TableRow parse_row(const std::string& id, const std::string& name, const std::string& side, const std::string& keys,
+                   const std::string& meaning) {
+  TableRow row;
+  row.id = id;
+  row.name = name;
+  row.side = side;
+  row.meaning = meaning;
+  if (id.empty() || name.empty() || meaning.empty()) malformed(id, "needs an id, a name and a meaning");
+  if (!side.empty() && side != "beam" && side != "pixel") malformed(id, "side '" + side + "', not beam or pixel");
+  for (std::size_t at = 0; at < keys.size();) {
+    const std::size_t end = std::min(keys.find(';', at), keys.size());
+    row.keys.push_back(parse_key(row, keys.substr(at, end - at)));
+    at = end + 1;
+    if (at == keys.size()) malformed(id, "ends in ';'");
+  }
+  return row;
+}
+
+bool key_accepts(const TableKey& key, double value, std::string* expected) {
+  if (expected != nullptr) {
+    *expected = key.is_switch ? "true or false" : (key.is_whole ? "a whole number in " : "a number in ") + key.range;
+  }
+  if (!std::isfinite(value)) return false;
+  if (key.is_switch) return value == 0.0 || value == 1.0;
+  if (key.is_whole && value != std::floor(value)) return false;
+  const bool above = key.low_included ? value >= key.low : value > key.low;
+  const bool below = key.high_included ? value <= key.high : value < key.high;
+  return above && below;
+}
+
+const std::vector<TableRow>& table(const std::string& kind) {
+  static const std::vector<TableRow> brdf = parse_rows(kBrdfRows);
+  static const std::vector<TableRow> shape = parse_rows(kShapeRows);
+  static const std::vector<TableRow> detector = parse_rows(kDetectorRows);
+  if (kind == "brdf") return brdf;
+  if (kind == "shape") return shape;
+  if (kind == "detector") return detector;
+  throw Error(ErrorCode::bug, "there is no table '" + kind + "'");
+}
+
+int table_index(const std::string& kind, const std::string& name) {
+  const std::vector<TableRow>& rows = table(kind);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (rows[i].name == name) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+std::vector<double> row_values(const TableRow& row, const std::map<std::string, double>& parameters) {
+  std::vector<double> values;
+  for (const TableKey& key : row.keys) {
+    const auto given = parameters.find(key.name);
+    if (given != parameters.end()) {
+      values.push_back(given->second);
+      continue;
+    }
+    double value = key.default_value;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (row.keys[i].name == key.default_key) value = values[i];
+    }
+    values.push_back(value);
+  }
+  return values;
+}
+
+}  // namespace clray
