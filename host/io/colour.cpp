@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+// From band radiances to colour; see colour.hpp. No white balance: a grey plate takes the tint of its light.
+#include "io/colour.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace clray::io {
+
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+double lobe(double x, double centre, double left, double right) {
+  const double t = (x - centre) / (x < centre ? left : right);
+  return std::exp(-0.5 * t * t);
+}
+
+double planck(double wavelength_nm, double temperature_K) {
+  constexpr double kSecondRadiation_nm_K = 1.438776877e7;  // h c / k, CODATA 2018
+  const double x = kSecondRadiation_nm_K / (wavelength_nm * temperature_K);
+  return 1.0 / (std::pow(wavelength_nm, 5) * std::expm1(x));
+}
+
+double spectrum_at(const Spectrum& spectrum, double wavelength_nm) {
+  const auto& x = spectrum.wavelength_nm;
+  const auto& y = spectrum.value;
+  if (x.empty()) return 1.0;
+  if (wavelength_nm <= x.front()) return y.front();
+  if (wavelength_nm >= x.back()) return y.back();
+  const std::size_t i = static_cast<std::size_t>(std::upper_bound(x.begin(), x.end(), wavelength_nm) - x.begin());
+  const double t = (wavelength_nm - x[i - 1]) / (x[i] - x[i - 1]);
+  return y[i - 1] + t * (y[i] - y[i - 1]);
+}
+
+double source_weight(const Source& source, double wavelength_nm) {
+  if (source.spectrum) return spectrum_at(*source.spectrum, wavelength_nm);
+  if (source.blackbody_K > 0.0) return planck(wavelength_nm, source.blackbody_K);
+  return source.kind == Source::Kind::sun ? planck(wavelength_nm, 5772.0) : 1.0;
+}
+
+/// Columns of the RGB-to-XYZ matrix: each primary's xyz, scaled so that their sum is the white point.
+Vec3 xyz_of(double x, double y) {
+  return {x / y, 1.0, (1.0 - x - y) / y};
+}
+
+double det(const Vec3& a, const Vec3& b, const Vec3& c) {
+  return a.x * (b.y * c.z - b.z * c.y) - b.x * (a.y * c.z - a.z * c.y) + c.x * (a.y * b.z - a.z * b.y);
+}
+
+}  // namespace
+
+Vec3 colour_matching(double w) {
+  const double x =
+      1.056 * lobe(w, 599.8, 37.9, 31.0) + 0.362 * lobe(w, 442.0, 16.0, 26.7) - 0.065 * lobe(w, 501.1, 20.4, 26.2);
+  const double y = 0.821 * lobe(w, 568.8, 46.9, 40.5) + 0.286 * lobe(w, 530.9, 16.3, 31.1);
+  const double z = 1.217 * lobe(w, 437.0, 11.8, 36.0) + 0.681 * lobe(w, 459.0, 26.0, 13.8);
+  return {x, y, z};
+}
+
+Vec3 band_colour(const Band& band, const Source& source) {
+  if (!(band.high_nm > band.low_nm)) return colour_matching(band.low_nm);
+  // Midpoints of at most 1 nm: the fit's lobes are 12 nm and wider.
+  const int steps = static_cast<int>(std::min(20000.0, std::ceil(band.high_nm - band.low_nm))) + 16;
+  Vec3 sum{0.0};
+  double weight = 0.0;
+  for (int i = 0; i < steps; ++i) {
+    const double w = band.low_nm + (i + 0.5) * (band.high_nm - band.low_nm) / steps;
+    const double share = source_weight(source, w);
+    sum += share * colour_matching(w);
+    weight += share;
+  }
+  return weight > 0.0 ? sum / weight : Vec3{0.0};
+}
+
+Vec3 xyz_to_linear_srgb(const Vec3& xyz) {
+  static const Vec3 red = xyz_of(0.64, 0.33), green = xyz_of(0.30, 0.60), blue = xyz_of(0.15, 0.06);
+  static const Vec3 white = xyz_of(0.3127, 0.3290);
+  static const double whole = det(red, green, blue);
+  static const Vec3 scale{det(white, green, blue) / whole, det(red, white, blue) / whole,
+                          det(red, green, white) / whole};
+  return {det(xyz, green, blue) / whole / scale.x, det(red, xyz, blue) / whole / scale.y,
+          det(red, green, xyz) / whole / scale.z};
+}
+
+double srgb_encode(double linear) {
+  if (!(linear > 0.0)) return 0.0;
+  if (linear >= 1.0) return 1.0;
+  return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
+}
+
+std::vector<Vec3> rgb_weights(const ImageResult& image, const Source& source) {
+  std::vector<Vec3> weights;
+  double white = 0.0;
+  for (std::size_t b = 0; b < image.bands.size(); ++b) {
+    const double power = b < image.band_source_W_m2.size() ? image.band_source_W_m2[b] : 0.0;
+    weights.push_back(power * band_colour(image.bands[b], source));
+    white += weights.back().y / kPi;
+  }
+  // Below a millionth of the eye's peak a band is not visible but the fit's tail.
+  double power = 0.0;
+  for (const double p : image.band_source_W_m2) power += p;
+  const bool visible = white * kPi > 1e-6 * power && white > 0.0;
+  for (auto& weight : weights) weight = visible ? xyz_to_linear_srgb(weight / white) : Vec3{0.0};
+  return weights;
+}
+
+}  // namespace clray::io

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+// error.csv and error.png: relative standard error against rays and against seconds of tracing, on every run; with a
+// reference also the true error. What is claimed falls as N^-1/2 for random points, faster for Sobol points.
+#include <algorithm>
+#include <cmath>
+
+#include "io/text.hpp"
+#include "io/writer.hpp"
+
+namespace clray::io {
+
+namespace {
+
+/// True error of the first total at one point of the run; NaN where the run did not keep it.
+std::vector<double> true_errors(const Writer& writer) {
+  std::vector<double> errors(writer.result.errors.size(), std::nan(""));
+  if (!writer.reference || writer.result.errors.empty()) return errors;
+  const double wanted = first_reference_total(writer.result, *writer.reference);
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    errors[i] = std::fabs(writer.result.errors[i].first_total - wanted) / std::fabs(wanted);
+  }
+  if (std::isnan(errors.back())) errors.back() = relative_true_error(writer.result, *writer.reference);
+  return errors;
+}
+
+void error_table(Writer& writer, const std::vector<double>& truth) {
+  auto table =
+      writer.table(writer.add("error", "csv"), "error against run time, a row per doubling; the last row is the result",
+                   "rays per orientation; seconds of tracing from the start of the phase; errors relative to the value "
+                   "(standard error: the largest over all totals)");
+  std::vector<std::string> columns{"rays", "seconds", "relative_standard_error"};
+  if (writer.reference) columns.push_back("relative_true_error");
+  columns.push_back("phase");
+  table.columns(columns);
+  for (std::size_t i = 0; i < writer.result.errors.size(); ++i) {
+    const auto& point = writer.result.errors[i];
+    table.cell(point.rays).cell(point.seconds).cell(point.relative_standard_error);
+    if (writer.reference) table.cell(truth[i]);
+    table.cell(std::string_view(point.phase)).end_row();
+  }
+  table.close();
+}
+
+/// Points that a logarithmic axis can show; returns the first, or a zero where there is none.
+struct Place {
+  double x = 0.0, error = 0.0;
+};
+
+struct Series {
+  std::vector<ErrorPoint> points;
+  void data(Plot& plot, const std::string& name) const {
+    plot.begin_data(name);
+    for (const auto& p : points) plot.point({static_cast<double>(p.rays), p.seconds, p.relative_standard_error});
+    plot.end_data();
+  }
+};
+
+bool drawable(double error) {
+  return std::isfinite(error) && error > 0.0;
+}
+
+/// One panel: x is column 1 (rays) or 2 (seconds). The guide passes through the first claimed point.
+void panel(Plot& plot, const std::string& column, const std::string& xlabel, Place guide, bool confirmed, bool truth) {
+  plot.line("set xlabel " + gnuplot_text(xlabel));
+  std::string command = "plot ";
+  if (guide.x > 0.0 && guide.error > 0.0) {
+    command += number(guide.error) + "*sqrt(" + number(guide.x) +
+               "/x) with lines dashtype 2 linewidth 1 linecolor '#999999' title 'falling as N^{-½}' enhanced, ";
+  }
+  command += "$claimed using " + column +
+             ":3 with linespoints pointtype 7 pointsize 1.1 linecolor '#0b4f94' "
+             "title 'claimed standard error'";
+  if (confirmed) {
+    command += ", $confirmed using " + column +
+               ":3 with points pointtype 6 pointsize 2.4 linewidth 2 "
+               "linecolor '#c8511b' title 'confirmation: the result'";
+  }
+  if (truth) {
+    command += ", $true using " + column +
+               ":3 with linespoints pointtype 5 pointsize 1.0 linecolor '#2b8a3e' "
+               "title 'true error'";
+  }
+  plot.line(command);
+}
+
+void error_picture(Writer& writer, const std::vector<double>& truth) {
+  Series claimed, confirmed, true_error;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    const auto& point = writer.result.errors[i];
+    if (drawable(point.relative_standard_error)) {
+      (point.phase == "confirm" ? confirmed : claimed).points.push_back(point);
+    }
+    if (drawable(truth[i])) {
+      true_error.points.push_back(point);
+      true_error.points.back().relative_standard_error = truth[i];
+    }
+  }
+  const std::string name = writer.add("error", "png");
+  Plot plot(name);
+  const std::string title = gnuplot_text(writer.scene_name() + ": error against cost");
+  if (claimed.points.empty() && confirmed.points.empty()) {
+    const bool exact = !writer.result.errors.empty() && writer.result.errors.back().relative_standard_error == 0.0;
+    plot.line("set title " + title + " font ',18'; unset border; unset tics; unset key; unset grid");
+    plot.line(std::string("set label 1 ") +
+              gnuplot_text(exact ? "the standard error is exactly 0: every replicate found the same total"
+                                 : "no error to show: nothing came back, or nothing was finished") +
+              " at graph 0.5, graph 0.5 center font ',18' textcolor '#555555'");
+    plot.line("plot [0:1][0:1] -1 notitle");
+    writer.draw(plot, name);
+    return;
+  }
+  claimed.data(plot, "claimed");
+  confirmed.data(plot, "confirmed");
+  true_error.data(plot, "true");
+  const auto& first = claimed.points.empty() ? confirmed.points.front() : claimed.points.front();
+  plot.line("set multiplot layout 1,2 title " + title + " font ',18'");
+  plot.line("set logscale xy; set format y '10^{%L}' ; set format x '10^{%L}'; set xtics enhanced; set ytics enhanced");
+  plot.line("set grid xtics ytics mxtics mytics linecolor '#cccccc' linewidth 0.6, linecolor '#eeeeee' linewidth 0.4");
+  plot.line("set key bottom left; set ylabel 'error relative to the value'; set tmargin at screen 0.9");
+  plot.line("set offsets graph 0.05, graph 0.05, graph 0.05, graph 0.05");
+  const bool any_confirmed = !confirmed.points.empty(), any_truth = !true_error.points.empty();
+  plot.line("set lmargin at screen 0.09; set rmargin at screen 0.51");
+  panel(plot, "1", "rays per orientation", {static_cast<double>(first.rays), first.relative_standard_error},
+        any_confirmed, any_truth);
+  plot.line("set lmargin at screen 0.57; set rmargin at screen 0.98; unset ylabel; unset key");
+  panel(plot, "2", "seconds of tracing", {first.seconds, first.relative_standard_error}, any_confirmed, any_truth);
+  plot.line("unset multiplot");
+  writer.draw(plot, name);
+}
+
+}  // namespace
+
+void write_error(Writer& writer) {
+  const auto truth = true_errors(writer);
+  error_table(writer, truth);
+  if (writer.options.plots) error_picture(writer, truth);
+}
+
+}  // namespace clray::io

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+// FITS files through cfitsio; see fits_file.hpp. No dates are written: equal results make equal files.
+#include "io/fits_file.hpp"
+
+#include <fitsio.h>
+
+#include <algorithm>
+
+#include "clray/error.hpp"
+#include "io/text.hpp"
+
+namespace clray::io {
+
+namespace {
+
+fitsfile* handle(void* file) {
+  return static_cast<fitsfile*>(file);
+}
+
+std::string numbered(const char* stem, std::size_t i) {
+  return stem + std::to_string(i + 1);
+}
+
+}  // namespace
+
+FitsFile::FitsFile(const std::string& path) : path_(path) {
+  fitsfile* file = nullptr;
+  // The "diskfile" form takes brackets and such in a path as they are.
+  fits_create_diskfile(&file, path.c_str(), &status_);
+  file_ = file;
+  check("make");
+}
+
+FitsFile::~FitsFile() {
+  if (file_) {
+    int ignored = 0;
+    fits_close_file(handle(file_), &ignored);
+  }
+}
+
+void FitsFile::check(const char* what) {
+  if (status_ == 0) return;
+  char reason[FLEN_STATUS];
+  fits_get_errstatus(status_, reason);
+  fits_clear_errmsg();
+  throw Error(ErrorCode::output, std::string("cannot ") + what + " " + one_line(path_) + ": " + reason);
+}
+
+void FitsFile::image(const std::string& name, const std::string& unit, const std::vector<FitsAxis>& axes,
+                     const std::vector<double>& pixels) {
+  std::vector<long> lengths;
+  for (const auto& axis : axes) lengths.push_back(axis.length);
+  fits_create_img(handle(file_), DOUBLE_IMG, static_cast<int>(lengths.size()), lengths.data(), &status_);
+  key("EXTNAME", name, "");
+  if (!unit.empty()) key("BUNIT", unit, "unit of the values");
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    if (!axes[i].type.empty()) key(numbered("CTYPE", i), axes[i].type, "what runs along the axis");
+    if (!axes[i].unit.empty()) key(numbered("CUNIT", i), axes[i].unit, "");
+    key(numbered("CRPIX", i), axes[i].reference_pixel, "reference pixel, 1 is the first's centre");
+    key(numbered("CRVAL", i), axes[i].reference_value, "value there");
+    key(numbered("CDELT", i), axes[i].step, "step of a pixel");
+  }
+  fits_write_img(handle(file_), TDOUBLE, 1, static_cast<LONGLONG>(pixels.size()), const_cast<double*>(pixels.data()),
+                 &status_);
+  check("write");
+}
+
+void FitsFile::table(const std::string& name, const std::vector<FitsColumn>& columns) {
+  std::vector<std::string> forms;
+  std::vector<char*> names, types, units;
+  std::size_t rows = 0;
+  for (const auto& column : columns) {
+    std::size_t longest = 1;
+    for (const auto& text : column.texts) longest = std::max(longest, text.size());
+    forms.push_back(column.texts.empty() ? "1D" : std::to_string(longest) + "A");
+    rows = std::max({rows, column.numbers.size(), column.texts.size()});
+  }
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    names.push_back(const_cast<char*>(columns[i].name.c_str()));
+    types.push_back(forms[i].data());
+    units.push_back(const_cast<char*>(columns[i].unit.c_str()));
+  }
+  fits_create_tbl(handle(file_), BINARY_TBL, static_cast<LONGLONG>(rows), static_cast<int>(columns.size()),
+                  names.data(), types.data(), units.data(), name.c_str(), &status_);
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const int number = static_cast<int>(i) + 1;
+    if (!columns[i].texts.empty()) {
+      std::vector<std::string> plain;
+      for (const auto& text : columns[i].texts) plain.push_back(ascii(text));
+      std::vector<char*> cells;
+      for (auto& text : plain) cells.push_back(text.data());
+      fits_write_col(handle(file_), TSTRING, number, 1, 1, static_cast<LONGLONG>(cells.size()), cells.data(), &status_);
+    } else if (!columns[i].numbers.empty()) {
+      fits_write_col(handle(file_), TDOUBLE, number, 1, 1, static_cast<LONGLONG>(columns[i].numbers.size()),
+                     const_cast<double*>(columns[i].numbers.data()), &status_);
+    }
+  }
+  check("write");
+}
+
+void FitsFile::key(const std::string& name, const std::string& value, const std::string& comment) {
+  const std::string plain = ascii(value).substr(0, 68);
+  fits_update_key_str(handle(file_), name.c_str(), plain.c_str(), comment.empty() ? nullptr : comment.c_str(),
+                      &status_);
+  check("write");
+}
+
+void FitsFile::key(const std::string& name, double value, const std::string& comment) {
+  fits_update_key(handle(file_), TDOUBLE, name.c_str(), &value, comment.empty() ? nullptr : comment.c_str(), &status_);
+  check("write");
+}
+
+void FitsFile::history(const std::string& text) {
+  fits_write_history(handle(file_), ascii(text).c_str(), &status_);
+  check("write");
+}
+
+void FitsFile::close() {
+  fits_close_file(handle(file_), &status_);
+  file_ = nullptr;
+  check("write");
+}
+
+}  // namespace clray::io

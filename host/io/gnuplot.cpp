@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+// Plots through gnuplot's standard input; see gnuplot.hpp. The script goes through an unnamed temporary file, so that
+// neither a full pipe nor a dying gnuplot can hang or kill us; a process group of its own keeps Ctrl-C away from it.
+#include "io/gnuplot.hpp"
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <vector>
+
+#include "io/text.hpp"
+
+namespace clray::io {
+
+std::string gnuplot_text(std::string_view text) {
+  std::string literal = "'";
+  for (const char c : one_line(text)) literal.append(c == '\'' ? 2 : 1, c);
+  return literal + "'";
+}
+
+Plot::Plot(const std::string& file, int width, int height) : file_(file) {
+  const std::string size = std::to_string(width) + "," + std::to_string(height);
+  line("set encoding utf8");
+  line("if (strstrt(GPVAL_TERMINALS, ' pngcairo ')) { set terminal pngcairo noenhanced size " + size +
+       " font 'DejaVu Sans,15' linewidth 1.5 background '#ffffff' }"
+       " else { set terminal png noenhanced truecolor size " +
+       size + " font 'DejaVu Sans,13' background '#ffffff' }");
+  line("set output " + gnuplot_text(file));
+  line("set border 3 linecolor '#444444' linewidth 0.8");
+  line("set tics nomirror textcolor '#222222'");
+  line("set grid back linecolor '#dddddd' linetype 1 linewidth 0.6");
+  line("set key top right opaque box linecolor '#cccccc' width 1 height 0.4 samplen 2.5");
+  line("set lmargin at screen 0.11; set rmargin at screen 0.965; set bmargin at screen 0.115");
+  line(
+      "set palette defined (0 '#440154', 1 '#472c7a', 2 '#3b518b', 3 '#2c718e', 4 '#21908d', 5 '#27ad81', "
+      "6 '#5cc863', 7 '#aadc32', 8 '#fde725')");
+}
+
+Plot& Plot::line(std::string_view text) {
+  script_.append(text).append("\n");
+  return *this;
+}
+
+Plot& Plot::begin_data(const std::string& name) {
+  return line("$" + name + " << END_OF_DATA");
+}
+
+Plot& Plot::point(std::initializer_list<double> numbers) {
+  for (const double value : numbers) {
+    // gnuplot reads beyond-double exponents as infinities; NaN is its word for "no point".
+    script_ += std::isfinite(value) ? number(value) : "NaN";
+    script_ += ' ';
+  }
+  script_.back() = '\n';
+  return *this;
+}
+
+Plot& Plot::end_data() {
+  return line("END_OF_DATA");
+}
+
+namespace {
+
+struct Close {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
+using TemporaryFile = std::unique_ptr<std::FILE, Close>;
+
+std::string first_words(std::FILE* file) {
+  std::rewind(file);
+  char buffer[300];
+  const std::size_t n = std::fread(buffer, 1, sizeof buffer, file);
+  return one_line(std::string_view(buffer, n));
+}
+
+/// Our environment with LC_ALL=C.UTF-8, so that numbers keep their point and titles their letters.
+std::vector<char*> environment(std::string& locale) {
+  std::vector<char*> variables;
+  for (char** variable = environ; *variable; ++variable) {
+    if (std::strncmp(*variable, "LC_ALL=", 7) != 0) variables.push_back(*variable);
+  }
+  variables.push_back(locale.data());
+  variables.push_back(nullptr);
+  return variables;
+}
+
+}  // namespace
+
+std::string Plot::draw(const std::string& folder) const {
+  const TemporaryFile input(std::tmpfile()), complaints(std::tmpfile());
+  if (!input || !complaints || std::fwrite(script_.data(), 1, script_.size(), input.get()) != script_.size() ||
+      std::fflush(input.get()) != 0) {
+    return "no " + file_ + ": cannot write a temporary file";
+  }
+  std::rewind(input.get());
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_adddup2(&actions, ::fileno(input.get()), 0);
+  posix_spawn_file_actions_addopen(&actions, 1, "/dev/null", O_WRONLY, 0);
+  posix_spawn_file_actions_adddup2(&actions, ::fileno(complaints.get()), 2);
+  posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+  posix_spawnattr_setpgroup(&attributes, 0);
+  char program[] = "gnuplot", settings[] = "-d", standard_input[] = "-";
+  char* const arguments[] = {program, settings, standard_input, nullptr};
+  std::string locale = "LC_ALL=C.UTF-8";
+  const auto variables = environment(locale);
+  pid_t child = 0;
+  const int code = ::posix_spawnp(&child, program, &actions, &attributes, arguments, variables.data());
+  posix_spawnattr_destroy(&attributes);
+  posix_spawn_file_actions_destroy(&actions);
+  if (code == ENOENT) return "no " + file_ + ": gnuplot is not installed (package gnuplot-nox)";
+  if (code != 0) return "no " + file_ + ": gnuplot cannot be started: " + std::strerror(code);
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  const std::string path = folder + "/" + file_;
+  struct stat information {};
+  const bool drawn = ::stat(path.c_str(), &information) == 0 && information.st_size > 0;
+  if (status == 0 && drawn) return {};
+  ::unlink(path.c_str());
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 127)
+    return "no " + file_ + ": gnuplot is not installed (package gnuplot-nox)";
+  return "no " + file_ + ": gnuplot failed: " + first_words(complaints.get());
+}
+
+}  // namespace clray::io

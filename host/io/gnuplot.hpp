@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// Plots through gnuplot's standard input: one look for all of clray's pictures, 1200 x 750 pixels.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace clray::io {
+
+/// Text as a gnuplot string literal, on one line.
+std::string gnuplot_text(std::string_view text);
+
+/// A gnuplot script in the making.
+class Plot {
+ public:
+  /// Sets terminal, fonts, grid and colours; `file` is a plain name inside the folder given to draw().
+  explicit Plot(const std::string& file, int width = 1200, int height = 750);
+
+  Plot& line(std::string_view text);                   ///< one command
+  Plot& begin_data(const std::string& name);           ///< lines of numbers follow, as `$name` in plot commands
+  Plot& point(std::initializer_list<double> numbers);  ///< a line of data; not-finite numbers become NaN
+  Plot& end_data();
+
+  /// Runs gnuplot in `folder`. Returns an empty text, or why there is no picture.
+  std::string draw(const std::string& folder) const;
+
+ private:
+  std::string file_, script_;
+};
+
+}  // namespace clray::io

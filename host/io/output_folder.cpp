@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+// A result's folder that appears whole or not at all; see output_folder.hpp. POSIX rename semantics; an existing
+// folder is swapped with Linux's renameat2(RENAME_EXCHANGE), or by two renames where the file system lacks it.
+#include "io/output_folder.hpp"
+
+#include <fcntl.h>
+#include <stdlib.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "clray/error.hpp"
+#include "clray/result.hpp"
+#include "io/text.hpp"
+
+namespace clray::io {
+
+namespace fs = std::filesystem;
+
+void fail_output(const std::string& what, const fs::path& path, int system_error) {
+  const std::string reason = system_error ? std::strerror(system_error) : "unknown reason (is the disk full?)";
+  throw Error(ErrorCode::output, "cannot " + what + " " + one_line(path.string()) + ": " + reason);
+}
+
+namespace {
+
+[[noreturn]] void refuse(const fs::path& target, const std::string& why) {
+  throw Error(ErrorCode::output,
+              "will not replace " + one_line(target.string()) + ": " + why + "; choose another --out or move it away");
+}
+
+/// Names that the result at `target` says it wrote.
+std::set<std::string> files_of_result(const fs::path& target) {
+  std::ifstream in(target / "summary.json", std::ios::binary);
+  const auto summary = nlohmann::json::parse(in, nullptr, false);
+  if (!summary.is_object() || !summary.contains("clray")) refuse(target, "its summary.json is not of clray");
+  std::set<std::string> names{"summary.json"};
+  const auto files = summary.find("files");
+  if (files != summary.end() && files->is_array()) {
+    for (const auto& name : *files) {
+      if (name.is_string()) names.insert(name.get<std::string>());
+    }
+  }
+  return names;
+}
+
+/// Throws unless `target` is absent, an empty folder, or a result of clray and nothing more.
+void check_replaceable(const fs::path& target) {
+  std::error_code error;
+  const auto status = fs::status(target, error);
+  if (status.type() == fs::file_type::not_found) return;
+  if (error) fail_output("look at", target, error.value());
+  if (!fs::is_directory(status)) refuse(target, "it is a file, not a folder");
+  fs::directory_iterator entries(target, error);
+  if (error) fail_output("read the folder", target, error.value());
+  if (entries == fs::directory_iterator{}) return;
+  if (!fs::is_regular_file(target / "summary.json", error))
+    refuse(target, "it is not a result of clray (no summary.json)");
+  const auto known = files_of_result(target);
+  for (const auto& entry : entries) {
+    const std::string name = entry.path().filename().string();
+    if (known.count(name) == 0) refuse(target, "it holds '" + one_line(name) + "', which clray did not write");
+  }
+}
+
+/// Absolute, without trailing slash; a symbolic link stands for what it points to.
+fs::path resolve(const std::string& target) {
+  if (target.empty()) throw Error(ErrorCode::output, "the output folder has an empty name");
+  std::error_code error;
+  fs::path path = fs::absolute(target, error).lexically_normal();
+  if (error) fail_output("find", target, error.value());
+  if (path.filename().empty()) path = path.parent_path();
+  if (fs::is_symlink(fs::symlink_status(path, error))) {
+    path = fs::weakly_canonical(path, error);
+    if (error) fail_output("follow the link", target, error.value());
+  }
+  return path;
+}
+
+void sync(const fs::path& path) {
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) fail_output("open", path, errno);
+  // Some file systems cannot sync folders; that is no loss of the user's data.
+  const bool failed = ::fsync(descriptor) != 0 && errno != EINVAL && errno != EROFS;
+  const int code = errno;
+  ::close(descriptor);
+  if (failed) fail_output("write", path, code);
+}
+
+/// Puts `temporary` at `target`, whatever stood there ending up at `temporary`. Returns an errno or 0.
+int exchange(const fs::path& temporary, const fs::path& target) {
+  if (::rename(temporary.c_str(), target.c_str()) == 0) return 0;
+  if (errno != ENOTEMPTY && errno != EEXIST) return errno;
+  if (::renameat2(AT_FDCWD, temporary.c_str(), AT_FDCWD, target.c_str(), RENAME_EXCHANGE) == 0) return 0;
+  if (errno != EINVAL && errno != ENOSYS && errno != ENOTSUP) return errno;
+  const fs::path old = temporary.string() + ".old";
+  if (::rename(target.c_str(), old.c_str()) != 0) return errno;
+  if (::rename(temporary.c_str(), target.c_str()) != 0) {
+    const int code = errno;
+    ::rename(old.c_str(), target.c_str());
+    return code;
+  }
+  ::rename(old.c_str(), temporary.c_str());
+  return 0;
+}
+
+}  // namespace
+
+OutputFolder::OutputFolder(const std::string& target) : target_(resolve(target)) {
+  check_replaceable(target_);
+  std::vector<fs::path> missing;
+  std::error_code error;
+  for (fs::path parent = target_.parent_path(); !parent.empty() && !fs::exists(parent, error);
+       parent = parent.parent_path()) {
+    missing.push_back(parent);
+  }
+  for (auto parent = missing.rbegin(); parent != missing.rend(); ++parent) {
+    if (::mkdir(parent->c_str(), 0777) == 0) {
+      made_parents_.push_back(*parent);
+    } else if (errno != EEXIST) {
+      const int code = errno;
+      remove_leftovers();
+      fail_output("make the folder", *parent, code);
+    }
+  }
+  std::string name = (target_.parent_path() / ("." + target_.filename().string().substr(0, 200) + ".XXXXXX")).string();
+  if (!::mkdtemp(name.data())) {
+    const int code = errno;
+    remove_leftovers();
+    fail_output("write in the folder", target_.parent_path(), code);
+  }
+  temporary_ = name;
+  const mode_t mask = ::umask(0);
+  ::umask(mask);
+  ::chmod(name.c_str(), 0777 & ~mask);
+}
+
+OutputFolder::~OutputFolder() {
+  remove_leftovers();
+}
+
+void OutputFolder::remove_leftovers() noexcept {
+  std::error_code ignored;
+  if (!temporary_.empty()) fs::remove_all(temporary_, ignored);
+  temporary_.clear();
+  if (done_) return;
+  for (auto parent = made_parents_.rbegin(); parent != made_parents_.rend(); ++parent) ::rmdir(parent->c_str());
+  made_parents_.clear();
+}
+
+void OutputFolder::commit() {
+  for (const auto& entry : fs::directory_iterator(temporary_)) sync(entry.path());
+  sync(temporary_);
+  check_replaceable(target_);  // it may have changed while we traced
+  if (const int code = exchange(temporary_, target_)) fail_output("put the result at", target_, code);
+  done_ = true;
+  sync(target_.parent_path());
+}
+
+}  // namespace clray::io
+
+namespace clray {
+
+void check_output(const std::string& folder) {
+  io::OutputFolder probe(folder);
+}
+
+}  // namespace clray

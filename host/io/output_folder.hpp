@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// A result's folder that appears whole or not at all: everything is written into a temporary sibling, forced to
+// disk, then renamed. An older result stays until its successor is complete.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace clray::io {
+
+/// Errors of the operating system as Error(output) "cannot <what> <path>: <reason>".
+[[noreturn]] void fail_output(const std::string& what, const std::filesystem::path& path, int system_error);
+
+/// One folder being written. Removed with all it holds unless commit() has returned.
+class OutputFolder {
+ public:
+  /// Makes the temporary folder beside `target`. Throws Error(output), also where something that is not a clray
+  /// result, or that holds files clray did not write, stands at `target`.
+  explicit OutputFolder(const std::string& target);
+  ~OutputFolder();
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder& operator=(const OutputFolder&) = delete;
+
+  /// Where a file is to be written.
+  std::string path(const std::string& file) const { return (temporary_ / file).string(); }
+  std::string folder() const { return temporary_.string(); }
+
+  /// Forces everything to disk and puts it in place. Throws Error(output); the old result is then still there.
+  void commit();
+
+ private:
+  void remove_leftovers() noexcept;
+
+  std::filesystem::path target_, temporary_;
+  std::vector<std::filesystem::path> made_parents_;  ///< outermost first
+  bool done_ = false;
+};
+
+}  // namespace clray::io

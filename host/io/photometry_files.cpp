@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+// The one-pixel spectrometer's files: spectrum.csv/.png (per band), and for several orientations
+// lightcurve.csv/.png (per time). Intensities in m²/sr, received flux in W/m², AB magnitudes (zero point 3631 Jy).
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "io/text.hpp"
+#include "io/writer.hpp"
+
+namespace clray::io {
+
+namespace {
+
+constexpr double kDegrees = 180.0 / 3.14159265358979323846;
+constexpr const char* kColours[] = {"#0b4f94", "#c8511b", "#2b8a3e", "#8a2b84",
+                                    "#a67c00", "#3aa6a6", "#555555", "#d63a6a"};
+using Group = std::vector<const SpectrometerResult*>;
+
+std::string band_name(const SpectrometerResult& record) {
+  const std::string& name = record.key.band.empty() ? record.band.name : record.key.band;
+  return !name.empty() ? name : rounded(record.band.low_nm, 6) + "-" + rounded(record.band.high_nm, 6);
+}
+
+void spectrum_table(Writer& writer, const Group& group, const std::string& stem, bool moving) {
+  auto table = writer.table(
+      writer.add(stem, "csv"), "intensity per wavelength band of " + writer.title("spectrometer", group.front()->key),
+      "wavelengths nm; intensity m^2/sr per unit irradiance in the band; source and received W/m^2 in the "
+      "band; magnitude AB (zero point 3631 Jy, averaged over the band)");
+  table.comment("received_W_m2 is 0 and magnitudes are nan where the scene states no range");
+  std::vector<std::string> columns{"band",           "low_nm",
+                                   "high_nm",        "intensity_m2_per_sr",
+                                   "standard_error", "source_W_m2",
+                                   "received_W_m2",  "received_standard_error",
+                                   "magnitude_AB",   "magnitude_standard_error"};
+  if (moving) columns.insert(columns.begin(), {"orientation", "time_s", "phase_angle_deg"});
+  table.columns(columns);
+  for (const auto* record : group) {
+    if (moving) {
+      table.cell(std::uint64_t{record->key.orientation}).cell(time_of(writer.result, record->key));
+      table.cell(record->phase_angle_rad * kDegrees);
+    }
+    table.cell(std::string_view(band_name(*record))).cell(record->band.low_nm).cell(record->band.high_nm);
+    table.cell(record->intensity_m2_per_sr.value).cell(record->intensity_m2_per_sr.standard_error);
+    table.cell(record->source_W_m2).cell(record->received_W_m2).cell(record->received_W_m2_standard_error);
+    table.cell(record->magnitude_AB).cell(record->magnitude_standard_error);
+    table.end_row();
+  }
+  table.close();
+}
+
+/// Records by band in order of first appearance, each in the order of its orientations.
+std::vector<Group> by_band(const Group& group) {
+  std::vector<Group> bands;
+  std::map<std::string, std::size_t> place;
+  for (const auto* record : group) {
+    const auto [entry, is_new] = place.emplace(band_name(*record), bands.size());
+    if (is_new) bands.emplace_back();
+    bands[entry->second].push_back(record);
+  }
+  return bands;
+}
+
+void lightcurve_table(Writer& writer, const std::vector<Group>& bands, const std::string& stem) {
+  auto table = writer.table(
+      writer.add(stem, "csv"), "light curve of " + writer.title("spectrometer", bands.front().front()->key),
+      "time s; phase angle (source - body - observer) deg; magnitude AB; intensity m^2/sr; *_error: one "
+      "standard error");
+  std::vector<std::string> columns{"time_s", "phase_angle_deg"};
+  for (const auto& band : bands) {
+    const std::string name = bands.size() > 1 ? "_" + band_name(*band.front()) : "";
+    for (const char* column : {"magnitude", "magnitude_error", "intensity", "intensity_error"})
+      columns.push_back(column + name);
+  }
+  table.columns(columns);
+  for (std::size_t i = 0; i < bands.front().size(); ++i) {
+    const auto& first = *bands.front()[i];
+    table.cell(time_of(writer.result, first.key)).cell(first.phase_angle_rad * kDegrees);
+    for (const auto& band : bands) {
+      if (i >= band.size()) {
+        for (int k = 0; k < 4; ++k) table.cell(std::nan(""));
+        continue;
+      }
+      table.cell(band[i]->magnitude_AB).cell(band[i]->magnitude_standard_error);
+      table.cell(band[i]->intensity_m2_per_sr.value).cell(band[i]->intensity_m2_per_sr.standard_error);
+    }
+    table.end_row();
+  }
+  table.close();
+}
+
+bool any_magnitude(const std::vector<Group>& bands) {
+  for (const auto& band : bands) {
+    for (const auto* record : band) {
+      if (std::isfinite(record->magnitude_AB)) return true;
+    }
+  }
+  return false;
+}
+
+void lightcurve_picture(Writer& writer, const std::vector<Group>& bands, const std::string& stem) {
+  const bool magnitudes = any_magnitude(bands);
+  const std::string name = writer.add(stem, "png");
+  Plot plot(name);
+  std::string command = "plot ";
+  for (std::size_t b = 0; b < bands.size(); ++b) {
+    const std::string data = "band" + std::to_string(b);
+    plot.begin_data(data);
+    for (const auto* record : bands[b]) {
+      const auto& a = record->intensity_m2_per_sr;
+      const double y = magnitudes ? record->magnitude_AB : a.value;
+      const double e = magnitudes ? record->magnitude_standard_error : a.standard_error;
+      // A star of infinite magnitude (nothing came back) leaves a gap.
+      plot.point({time_of(writer.result, record->key), std::isfinite(e) ? y : std::nan(""), e});
+    }
+    plot.end_data();
+    const std::string colour = std::string("linecolor '") + kColours[b % std::size(kColours)] + "'";
+    command += (b ? ", $" : "$") + data + " using 1:2:3 with yerrorbars pointtype 7 pointsize 0.5 linewidth 1 " +
+               colour + " notitle, $" + data + " using 1:2 with lines linewidth 1.2 " + colour +
+               (bands.size() > 1 ? " title " + gnuplot_text(band_name(*bands[b].front()) + " nm") : " notitle");
+  }
+  plot.line("set title " + gnuplot_text(writer.title("spectrometer", bands.front().front()->key) + ": light curve") +
+            " font ',18'");
+  plot.line(
+      "set xlabel 'time (s)'; set autoscale xfix; set offsets 0,0,graph 0.05,graph 0.05; set tmargin at screen 0.92");
+  plot.line(magnitudes ? "set ylabel 'apparent AB magnitude (brighter is up)'; set yrange [] reverse"
+                       : "set ylabel 'A  (m² sr⁻¹)'");
+  plot.line(command);
+  writer.draw(plot, name);
+}
+
+void spectrum_picture(Writer& writer, const Group& group, const std::string& stem) {
+  const std::string name = writer.add(stem, "png");
+  Plot plot(name);
+  plot.begin_data("bands");
+  double high = 0.0;
+  for (const auto* record : group) {
+    const double middle = 0.5 * (record->band.low_nm + record->band.high_nm);
+    const auto& a = record->intensity_m2_per_sr;
+    high = std::max(high, a.value + a.standard_error);
+    plot.point({middle, a.value, record->band.low_nm, record->band.high_nm, a.value - a.standard_error,
+                a.value + a.standard_error});
+  }
+  plot.end_data();
+  plot.line("set title " + gnuplot_text(writer.title("spectrometer", group.front()->key) + ": intensity per band") +
+            " font ',18'");
+  plot.line("set xlabel 'wavelength (nm)'; set ylabel 'A  (m² sr⁻¹)'; set tmargin at screen 0.92; set bars small");
+  plot.line("set yrange [0:" + number(high > 0.0 ? high * 1.15 : 1.0) + "]; set offsets graph 0.03, graph 0.03, 0, 0");
+  plot.line(
+      "plot $bands using 1:2:3:4:5:6 with xyerrorbars pointtype 7 pointsize 0.8 linecolor '#0b4f94' "
+      "title 'band, ± 1 standard error'");
+  writer.draw(plot, name);
+}
+
+/// Replaces the kind at the head of a stem: the files are called after what they show.
+std::string renamed(const std::string& stem, const std::string& name) {
+  constexpr std::string_view kKind = "spectrometer";
+  return stem.compare(0, kKind.size(), kKind) == 0 ? name + stem.substr(kKind.size()) : name + "-" + stem;
+}
+
+}  // namespace
+
+void write_spectrometer(Writer& writer) {
+  const bool moving = writer.result.orientations.size() > 1;
+  for (const auto& group : groups(writer.result.spectrometer)) {
+    const std::string stem = writer.stem("spectrometer", group.front()->key);
+    spectrum_table(writer, group, renamed(stem, "spectrum"), moving);
+    if (!moving) {
+      if (writer.options.plots) spectrum_picture(writer, group, renamed(stem, "spectrum"));
+      continue;
+    }
+    const auto bands = by_band(group);
+    lightcurve_table(writer, bands, renamed(stem, "lightcurve"));
+    if (writer.options.plots) lightcurve_picture(writer, bands, renamed(stem, "lightcurve"));
+  }
+}
+
+}  // namespace clray::io

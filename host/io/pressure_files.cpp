@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+// Radiation pressure's files: pressure.csv (a row per Sun direction or orientation) and pressure.png (a map over
+// azimuth and elevation where there are many directions, curves over time for a motion). Coefficients C = F c / E in
+// m², torques about the reference point in m³, body frame.
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "io/text.hpp"
+#include "io/writer.hpp"
+
+namespace clray::io {
+
+namespace {
+
+constexpr double kDegrees = 180.0 / 3.14159265358979323846;
+using Group = std::vector<const PressureResult*>;
+
+double azimuth_deg(const Vec3& s) {
+  return s.x == 0.0 && s.y == 0.0 ? 0.0 : std::atan2(s.y, s.x) * kDegrees;
+}
+double elevation_deg(const Vec3& s) {
+  return std::atan2(s.z, std::sqrt(s.x * s.x + s.y * s.y)) * kDegrees;
+}
+double length(const Vec3& v) {
+  return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
+}
+
+void pressure_table(Writer& writer, const Group& group, const std::string& stem) {
+  auto table = writer.table(
+      writer.add(stem, "csv"), "radiation force and torque of " + writer.title("pressure", group.front()->key),
+      "sun: unit vector toward the source, body frame; angles deg; C = F c / E m^2; T = torque c / E m^3 about the "
+      "reference point; absorbed m^2; *_error: one standard error");
+  table.comment("force in N = C * irradiance / 299792458 m/s; 1361 W/m^2 at 1 au");
+  std::vector<std::string> columns{"orientation", "time_s", "sun_x", "sun_y", "sun_z", "azimuth_deg", "elevation_deg"};
+  for (const char* vector : {"C", "T"}) {
+    const std::string unit = vector[0] == 'C' ? "_m2" : "_m3";
+    for (const char* axis : {"x", "y", "z"}) columns.push_back(vector + std::string(axis) + unit);
+    for (const char* axis : {"x", "y", "z"}) columns.push_back(vector + std::string(axis) + "_error" + unit);
+  }
+  columns.insert(columns.end(), {"absorbed_m2", "absorbed_error_m2"});
+  table.columns(columns);
+  for (const auto* record : group) {
+    table.cell(std::uint64_t{record->key.orientation}).cell(time_of(writer.result, record->key));
+    table.cell(record->sun).cell(azimuth_deg(record->sun)).cell(elevation_deg(record->sun));
+    table.cell(record->coefficient_m2.value).cell(record->coefficient_m2.standard_error);
+    table.cell(record->torque_coefficient_m3.value).cell(record->torque_coefficient_m3.standard_error);
+    table.cell(record->absorbed_m2.value).cell(record->absorbed_m2.standard_error);
+    table.end_row();
+  }
+  table.close();
+}
+
+bool even_grid(const Group& group, std::size_t& columns, std::size_t& rows) {
+  std::map<long, int> azimuths, elevations;
+  for (const auto* record : group) {
+    ++azimuths[std::lround(azimuth_deg(record->sun) * 1e6)];
+    ++elevations[std::lround(elevation_deg(record->sun) * 1e6)];
+  }
+  columns = azimuths.size();
+  rows = elevations.size();
+  return columns > 1 && rows > 1 && columns * rows == group.size();
+}
+
+/// Map of |C|; a grid that is regular in both angles becomes tiles, any other set of directions points.
+void map_picture(Writer& writer, const Group& group, const std::string& stem) {
+  std::size_t columns = 0, rows = 0;
+  const bool tiles = even_grid(group, columns, rows);
+  auto sorted = group;
+  std::stable_sort(sorted.begin(), sorted.end(), [](const auto* a, const auto* b) {
+    const long ea = std::lround(elevation_deg(a->sun) * 1e6), eb = std::lround(elevation_deg(b->sun) * 1e6);
+    return ea != eb ? ea < eb : azimuth_deg(a->sun) < azimuth_deg(b->sun);
+  });
+  const std::string name = writer.add(stem, "png");
+  Plot plot(name);
+  plot.begin_data("map");
+  for (const auto* record : sorted) {
+    plot.point({azimuth_deg(record->sun), elevation_deg(record->sun), length(record->coefficient_m2.value)});
+  }
+  plot.end_data();
+  plot.line("set title " +
+            gnuplot_text(writer.title("pressure", group.front()->key) + ": radiation force by direction of the Sun") +
+            " font ',18'");
+  plot.line("set xlabel 'azimuth of the Sun in the body frame (°)'; set ylabel 'elevation (°)'");
+  plot.line("set cblabel '|C| = |F| c / E  (m²)' offset 1,0; unset key; unset grid; set xtics 45; set ytics 30");
+  plot.line("set autoscale xfix; set autoscale yfix; set rmargin at screen 0.84; set tmargin at screen 0.92");
+  plot.line(
+      tiles ? "plot $map using 1:2:3 with image"
+            : "set xrange [-185:185]; set yrange [-93:93]; plot $map using 1:2:3 with points pointtype 7 pointsize 2 "
+              "linecolor palette");
+  writer.draw(plot, name);
+}
+
+void time_picture(Writer& writer, const Group& group, const std::string& stem) {
+  const std::string name = writer.add(stem, "png");
+  Plot plot(name);
+  plot.begin_data("force");
+  for (const auto* record : group) {
+    const Vec3 c = record->coefficient_m2.value, e = record->coefficient_m2.standard_error;
+    plot.point({time_of(writer.result, record->key), c.x, c.y, c.z, e.x, e.y, e.z});
+  }
+  plot.end_data();
+  plot.line("set title " +
+            gnuplot_text(writer.title("pressure", group.front()->key) + ": radiation force, body frame") +
+            " font ',18'");
+  plot.line("set xlabel 'time (s)'; set ylabel 'C = F c / E  (m²)'; set autoscale xfix; set tmargin at screen 0.92");
+  plot.line(
+      "set offsets 0, 0, graph 0.12, graph 0.05; set key horizontal; set style fill transparent solid 0.25 noborder");
+  std::string command = "plot ";
+  const char* const colours[] = {"#c8511b", "#2b8a3e", "#0b4f94"};
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::string value = "$" + std::to_string(axis + 2), error = "$" + std::to_string(axis + 5);
+    const std::string colour = std::string(" linecolor '") + colours[axis] + "'";
+    command += std::string(axis ? ", " : "") + "$force using 1:(" + value + "-" + error + "):(" + value + "+" + error +
+               ") with filledcurves" + colour + " notitle, $force using 1:" + std::to_string(axis + 2) + " with lines" +
+               colour + " title 'C_" + "xyz"[axis] + "'";
+  }
+  plot.line(command);
+  writer.draw(plot, name);
+}
+
+bool directions_differ(const Group& group) {
+  return std::any_of(group.begin(), group.end(),
+                     [&](const auto* record) { return !(record->sun == group.front()->sun); });
+}
+
+}  // namespace
+
+void write_pressure(Writer& writer) {
+  for (const auto& group : groups(writer.result.pressure)) {
+    const std::string stem = writer.stem("pressure", group.front()->key);
+    pressure_table(writer, group, stem);
+    if (!writer.options.plots || group.size() < 2) continue;
+    if (writer.scene.motion || !directions_differ(group)) {
+      time_picture(writer, group, stem);
+    } else {
+      map_picture(writer, group, stem);
+    }
+  }
+}
+
+}  // namespace clray::io

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+// --reference: totals of a saved summary.json, or of a delay.csv (ours or a closed form's table), against which the
+// true error of a result is measured.
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "clray/error.hpp"
+#include "io/text.hpp"
+#include "io/writer.hpp"
+
+namespace clray {
+
+namespace {
+
+using io::Total;
+constexpr const char* kFirst = "";  ///< path of a reference that belongs to the first total, whatever its name
+
+[[noreturn]] void fail(const std::string& file, std::size_t line, const std::string& message) {
+  throw Error(ErrorCode::input, message, line ? file + ":" + std::to_string(line) : file);
+}
+
+bool read_number(std::string_view text, double& value) {
+  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
+  while (!text.empty() && (text.back() == ' ' || text.back() == '\t' || text.back() == '\r')) text.remove_suffix(1);
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc{} && end == text.data() + text.size() && std::isfinite(value);
+}
+
+std::string text_of(const nlohmann::json& entry, const char* key) {
+  return entry.contains(key) && entry[key].is_string() ? entry[key].get<std::string>() : std::string{};
+}
+
+Reference from_summary(const std::string& file, const std::string& text) {
+  const auto summary = nlohmann::json::parse(text, nullptr, false);
+  if (summary.is_discarded()) fail(file, 0, "not valid JSON; expected the summary.json of a clray result");
+  if (!summary.is_object() || !summary.contains("totals") || !summary["totals"].is_array()) {
+    fail(file, 0, "holds no totals; expected the summary.json of a clray result");
+  }
+  Reference reference{file, {}};
+  for (const auto& entry : summary["totals"]) {
+    if (!entry.is_object() || !entry.contains("value") || !entry["value"].is_number()) continue;
+    ResultKey key{text_of(entry, "detector"), text_of(entry, "observer"), text_of(entry, "variant"),
+                  text_of(entry, "band"), 0};
+    if (entry.contains("orientation") && entry["orientation"].is_number_unsigned()) {
+      key.orientation = entry["orientation"].get<std::size_t>();
+    }
+    reference.totals[io::total_path(key)] = entry["value"].get<double>();
+  }
+  if (reference.totals.empty()) fail(file, 0, "holds no totals to compare with");
+  return reference;
+}
+
+std::vector<std::string_view> split(std::string_view line) {
+  std::vector<std::string_view> cells;
+  for (std::size_t comma; (comma = line.find(',')) != std::string_view::npos; line.remove_prefix(comma + 1)) {
+    cells.push_back(line.substr(0, comma));
+  }
+  cells.push_back(line);
+  return cells;
+}
+
+/// The total is that of the comment line if there is one (it knows what lies outside the window), else the sum of the
+/// bins.
+Reference from_table(const std::string& file, const std::string& text) {
+  constexpr std::string_view kTotal = "# total_m2_per_sr: ";
+  std::vector<double> delay, density;
+  double stated = std::nan("");
+  std::size_t number = 0;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    const auto line = std::string_view(text).substr(begin, end - begin);
+    begin = end + 1;
+    ++number;
+    if (line.substr(0, kTotal.size()) == kTotal) {
+      const auto rest = line.substr(kTotal.size());
+      if (!read_number(rest.substr(0, rest.find(' ')), stated)) fail(file, number, "the total is not a number");
+    }
+    if (line.empty() || line == "\r" || line.front() == '#' || line.substr(0, 8) == "delay_ns") continue;
+    const auto cells = split(line);
+    double x = 0.0, y = 0.0;
+    if (cells.size() < 2 || !read_number(cells[0], x) || !read_number(cells[1], y)) {
+      fail(file, number,
+           "expected delay_ns,intensity_m2_per_sr_per_ns as two numbers (of a delay.csv of one orientation)");
+    }
+    delay.push_back(x);
+    density.push_back(y);
+  }
+  if (delay.empty()) fail(file, 0, "holds no rows; expected a delay.csv");
+  double sum = 0.0;
+  for (const double value : density) sum += value;
+  if (delay.size() > 1) sum *= (delay.back() - delay.front()) / static_cast<double>(delay.size() - 1);
+  if (std::isnan(stated) && delay.size() == 1) fail(file, 0, "one row has no bin width; expected at least two");
+  return {file, {{kFirst, std::isnan(stated) ? sum : stated}}};
+}
+
+double wanted_total(const Total& total, bool first, const Reference& reference) {
+  auto found = reference.totals.find(io::total_path(total.key));
+  if (found == reference.totals.end() && first) found = reference.totals.find(kFirst);
+  return found == reference.totals.end() ? std::nan("") : found->second;
+}
+
+}  // namespace
+
+Reference load_reference(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  if (!in || in.bad()) fail(file, 0, "cannot be read; expected a summary.json or a delay.csv");
+  const auto first = text.find_first_not_of(" \t\r\n");
+  if (first == std::string::npos) fail(file, 0, "is empty; expected a summary.json or a delay.csv");
+  return text[first] == '{' ? from_summary(file, text) : from_table(file, text);
+}
+
+double relative_true_error(const Result& result, const Reference& reference) {
+  double largest = std::nan("");
+  bool first = true;
+  for (const auto& total : io::totals(result)) {
+    const double wanted = wanted_total(total, first, reference);
+    first = false;
+    // A zero that was expected to be zero has no error.
+    const double error = total.value == wanted ? 0.0 : std::fabs(total.value - wanted) / std::fabs(wanted);
+    if (!std::isnan(error) && !(error <= largest)) largest = error;
+  }
+  return largest;
+}
+
+namespace io {
+
+std::string total_path(const ResultKey& key) {
+  return key.detector + "/" + key.observer + "/" + key.variant + "/" + key.band + "/" + std::to_string(key.orientation);
+}
+
+std::vector<Total> totals(const Result& result) {
+  std::vector<Total> all;
+  for (const auto& delay : result.delay) {
+    all.push_back({delay.key, delay.intensity_m2_per_sr.value, delay.intensity_m2_per_sr.standard_error, "m2/sr"});
+  }
+  for (const auto& band : result.spectrometer) {
+    all.push_back({band.key, band.intensity_m2_per_sr.value, band.intensity_m2_per_sr.standard_error, "m2/sr"});
+  }
+  for (const auto& pressure : result.pressure) {
+    const Vec3 c = pressure.coefficient_m2.value, e = pressure.coefficient_m2.standard_error;
+    const double length = std::sqrt(c.x * c.x + c.y * c.y + c.z * c.z);
+    // Components are correlated in an unknown way: the sum of their shares bounds the error of the length.
+    const double error =
+        length > 0.0 ? (std::fabs(c.x) * e.x + std::fabs(c.y) * e.y + std::fabs(c.z) * e.z) / length : 0.0;
+    all.push_back({pressure.key, length, error, "m2"});
+  }
+  return all;
+}
+
+double first_reference_total(const Result& result, const Reference& reference) {
+  const auto all = totals(result);
+  return all.empty() ? std::nan("") : wanted_total(all.front(), true, reference);
+}
+
+}  // namespace io
+
+}  // namespace clray

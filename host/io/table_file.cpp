@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// A CSV file with its '#' lines; see table_file.hpp. Quoting as RFC 4180; text cells are kept on one line.
+#include "io/table_file.hpp"
+
+#include <cerrno>
+
+#include "io/output_folder.hpp"
+#include "io/text.hpp"
+
+namespace clray::io {
+
+TableFile::TableFile(const std::string& path, const Result& result, const Scene& scene, const std::string& what,
+                     const std::string& units)
+    : path_(path) {
+  errno = 0;
+  file_ = std::fopen(path.c_str(), "wb");
+  if (!file_) fail_output("write", path, errno);
+  comment("what: " + what);
+  comment("units: " + units);
+  comment("scene: " + (scene.path.empty() ? scene.name : scene.path));
+  comment("seed: " + std::to_string(result.seed));
+  comment("digest: " + hex16(result.digest));
+  comment("clray: " CLRAY_VERSION);
+}
+
+TableFile::~TableFile() {
+  if (file_) std::fclose(file_);
+}
+
+void TableFile::put(std::string_view text) {
+  errno = 0;
+  if (std::fwrite(text.data(), 1, text.size(), file_) != text.size()) fail_output("write", path_, errno);
+}
+
+void TableFile::comment(std::string_view text) {
+  put("# " + one_line(text) + "\n");
+}
+
+void TableFile::columns(const std::vector<std::string>& names) {
+  for (const auto& name : names) cell(std::string_view(name));
+  end_row();
+}
+
+TableFile& TableFile::cell(double value) {
+  row_ += number(value);
+  row_ += ',';
+  return *this;
+}
+
+TableFile& TableFile::cell(std::uint64_t value) {
+  row_ += std::to_string(value);
+  row_ += ',';
+  return *this;
+}
+
+TableFile& TableFile::cell(std::string_view text) {
+  const std::string line = one_line(text);
+  if (line.find_first_of(",\"") == std::string::npos) {
+    row_ += line;
+  } else {
+    row_ += '"';
+    for (const char c : line) row_.append(c == '"' ? 2 : 1, c);
+    row_ += '"';
+  }
+  row_ += ',';
+  return *this;
+}
+
+void TableFile::end_row() {
+  row_.back() = '\n';
+  put(row_);
+  row_.clear();
+}
+
+void TableFile::close() {
+  errno = 0;
+  const bool failed = std::fclose(file_) != 0;
+  file_ = nullptr;
+  if (failed) fail_output("write", path_, errno);
+}
+
+}  // namespace clray::io

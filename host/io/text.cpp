@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+// Numbers and names as text in result files; see text.hpp. Only std::to_chars is used for numbers: printf and
+// streams follow the locale.
+#include "io/text.hpp"
+
+#include <charconv>
+#include <cmath>
+
+#include "clray/result.hpp"
+
+namespace clray::io {
+
+namespace {
+
+/// Length in bytes of the valid UTF-8 character that starts at `i`, or 0.
+std::size_t utf8_length(std::string_view text, std::size_t i) {
+  const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(text[k]); };
+  const unsigned char lead = byte(i);
+  if (lead < 0x80) return 1;
+  const std::size_t length = lead >= 0xc2 && lead < 0xe0   ? 2
+                             : lead >= 0xe0 && lead < 0xf0 ? 3
+                             : lead >= 0xf0 && lead < 0xf5 ? 4
+                                                           : 0;
+  if (length == 0 || i + length > text.size()) return 0;
+  for (std::size_t k = 1; k < length; ++k) {
+    if ((byte(i + k) & 0xc0) != 0x80) return 0;
+  }
+  const unsigned char second = byte(i + 1);
+  if ((lead == 0xe0 && second < 0xa0) || (lead == 0xed && second >= 0xa0)) return 0;
+  if ((lead == 0xf0 && second < 0x90) || (lead == 0xf4 && second >= 0x90)) return 0;
+  return length;
+}
+
+std::string chars(double value, std::chars_format format, int precision) {
+  char buffer[400];
+  const auto end = std::to_chars(buffer, buffer + sizeof buffer, value, format, precision).ptr;
+  return {buffer, end};
+}
+
+}  // namespace
+
+std::string number(double value) {
+  if (std::isnan(value)) return "nan";
+  if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
+  char buffer[40];
+  const auto end = std::to_chars(buffer, buffer + sizeof buffer, value).ptr;
+  return {buffer, end};
+}
+
+std::string rounded(double value, int digits) {
+  return std::isfinite(value) ? chars(value, std::chars_format::general, digits) : number(value);
+}
+
+std::string one_line(std::string_view text) {
+  std::string line;
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t length = utf8_length(text, i);
+    const unsigned char c = static_cast<unsigned char>(text[i]);
+    if (length == 0) {
+      line += '?';
+      ++i;
+      continue;
+    }
+    if (length == 1) {
+      line += c < 0x20 || c == 0x7f ? ' ' : text[i];
+    } else {
+      line.append(text.substr(i, length));
+    }
+    i += length;
+  }
+  return line;
+}
+
+std::string file_name_part(std::string_view text) {
+  constexpr std::size_t kLongest = 80;
+  const std::string clean = one_line(text);
+  std::string part;
+  for (std::size_t i = 0; i < clean.size();) {
+    const std::size_t length = utf8_length(clean, i);
+    if (part.size() + length > kLongest) break;
+    const char c = clean[i];
+    const bool keep = length > 1 || (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+                      c == '_' || c == '-' || (c == '.' && !part.empty());
+    if (keep) {
+      part.append(clean, i, length);
+    } else {
+      part += '_';
+    }
+    i += length;
+  }
+  return part.empty() ? "unnamed" : part;
+}
+
+std::string ascii(std::string_view text) {
+  std::string plain;
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t length = utf8_length(text, i);
+    const unsigned char c = static_cast<unsigned char>(text[i]);
+    plain += length == 1 && c >= 0x20 && c < 0x7f ? text[i] : '?';
+    i += length == 0 ? 1 : length;
+  }
+  return plain;
+}
+
+std::string hex16(unsigned long long value) {
+  std::string digits(16, '0');
+  for (int i = 15; i >= 0; --i, value >>= 4) digits[i] = "0123456789abcdef"[value & 15];
+  return digits;
+}
+
+}  // namespace clray::io
+
+namespace clray {
+
+std::string format_with_error(double value, double error) {
+  using io::rounded;
+  if (!std::isfinite(value)) return "n/a";
+  if (!std::isfinite(error)) return rounded(value, 6) + " ± n/a";
+  if (error == 0.0) return rounded(value, 6) + " ± 0";
+  const int error_power = static_cast<int>(std::floor(std::log10(std::fabs(error))));
+  const double largest = std::fmax(std::fabs(value), std::fabs(error));
+  const int power = static_cast<int>(std::floor(std::log10(largest)));
+  const bool plain = power > -4 && power < 7 && error_power < 2;
+  if (plain) {
+    const int decimals = 1 - error_power > 15 ? 15 : 1 - error_power;
+    return io::chars(value, std::chars_format::fixed, decimals) + " ± " +
+           io::chars(error, std::chars_format::fixed, decimals);
+  }
+  const double scale = std::pow(10.0, power);
+  int decimals = power - error_power + 1;
+  decimals = decimals < 0 ? 0 : decimals > 15 ? 15 : decimals;
+  return "(" + io::chars(value / scale, std::chars_format::fixed, decimals) + " ± " +
+         io::chars(error / scale, std::chars_format::fixed, decimals) + ")e" + std::to_string(power);
+}
+
+}  // namespace clray

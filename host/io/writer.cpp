@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+// write_result(): the order in which a result's files are made, and the names they get. Plots come before the
+// summary, so that it can say which are missing.
+#include "io/writer.hpp"
+
+#include <cmath>
+
+#include "clray/error.hpp"
+#include "io/text.hpp"
+
+namespace clray::io {
+
+std::string Writer::add(const std::string& stem, const std::string& extension) {
+  std::string name = stem + "." + extension;
+  for (int i = 2; !taken.insert(name).second; ++i) name = stem + "-" + std::to_string(i) + "." + extension;
+  files.push_back(name);
+  return name;
+}
+
+TableFile Writer::table(const std::string& name, const std::string& what, const std::string& units) const {
+  return TableFile(folder.path(name), result, scene, what, units);
+}
+
+void Writer::draw(const Plot& plot, const std::string& name) {
+  const std::string trouble = plot.draw(folder.folder());
+  if (trouble.empty()) return;
+  files.pop_back();
+  taken.erase(name);
+  warnings.push_back(trouble);
+}
+
+std::string Writer::scene_name() const {
+  return scene.name.empty() ? "scene" : scene.name;
+}
+
+std::string Writer::kind_of(const ResultKey& key) const {
+  for (const auto& detector : scene.detectors) {
+    if ((detector.name.empty() ? detector.kind : detector.name) == key.detector) return detector.kind;
+  }
+  return key.detector;
+}
+
+std::string Writer::stem(const std::string& kind, const ResultKey& key) const {
+  int of_kind = 0;
+  for (const auto& detector : scene.detectors) of_kind += detector.kind == kind;
+  std::string stem = of_kind > 1 ? file_name_part(key.detector) : kind;
+  if (!key.observer.empty()) stem += "-" + file_name_part(key.observer);
+  if (!key.variant.empty()) stem += "-" + file_name_part(key.variant);
+  return stem;
+}
+
+std::string Writer::title(const std::string& kind, const ResultKey& key) const {
+  std::string title = scene_name();
+  if (!key.detector.empty() && key.detector != kind) title += ", " + key.detector;
+  if (!key.observer.empty()) title += ", seen from " + key.observer;
+  if (!key.variant.empty()) title += ", " + key.variant;
+  return title;
+}
+
+TimeUnit readable_time_unit(double seconds) {
+  constexpr TimeUnit kUnits[] = {{1.0, "s"}, {1e3, "ms"}, {1e6, "µs"}, {1e9, "ns"}, {1e12, "ps"}, {1e15, "fs"}};
+  if (!(seconds > 0.0)) return kUnits[3];
+  // Ranging people think in nanoseconds: leave them only where the numbers would not read.
+  if (seconds > 0.05e-9 && seconds < 20e-6) return kUnits[3];
+  for (const auto& unit : kUnits) {
+    if (seconds * unit.per_second >= 1.0) return unit;
+  }
+  return kUnits[5];
+}
+
+double time_of(const Result& result, const ResultKey& key) {
+  return key.orientation < result.orientations.size() ? result.orientations[key.orientation].time_s : 0.0;
+}
+
+}  // namespace clray::io
+
+namespace clray {
+
+std::vector<std::string> write_result(const Result& result, const Scene& scene, const std::string& folder,
+                                      const WriteOptions& options) {
+  io::OutputFolder place(folder);
+  Reference reference;
+  if (!options.reference_file.empty()) reference = load_reference(options.reference_file);
+  io::Writer writer{result, scene, options, place, options.reference_file.empty() ? nullptr : &reference, {}, {}, {}};
+  try {
+    io::write_delay(writer);
+    io::write_spectrometer(writer);
+    io::write_pressure(writer);
+    io::write_images(writer);
+    io::write_error(writer);
+    std::vector<MoreFiles> more;
+    for (const auto& write_more : options.more) {
+      more.push_back(write_more(place.folder()));
+      writer.files.insert(writer.files.end(), more.back().names.begin(), more.back().names.end());
+    }
+    io::write_summary(writer, more);
+    place.commit();
+  } catch (const Error&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw Error(ErrorCode::output, std::string("cannot write the result: ") + error.what(), folder);
+  }
+  if (options.warnings)
+    options.warnings->insert(options.warnings->end(), writer.warnings.begin(), writer.warnings.end());
+  return writer.files;
+}
+
+}  // namespace clray

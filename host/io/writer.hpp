@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the writers of one result share, and the writers themselves: one call per kind of file.
+#pragma once
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "clray/result.hpp"
+#include "io/gnuplot.hpp"
+#include "io/output_folder.hpp"
+#include "io/table_file.hpp"
+
+namespace clray::io {
+
+/// One result on its way to disk.
+struct Writer {
+  const Result& result;
+  const Scene& scene;
+  const WriteOptions& options;
+  const OutputFolder& folder;
+  const Reference* reference = nullptr;      ///< of --reference, or null
+  std::vector<std::string> files, warnings;  ///< what was written; what went wrong without harm
+  std::set<std::string> taken;               ///< names that add() has given out
+
+  /// Registers a file "stem.extension" under a name not yet taken and returns the name.
+  std::string add(const std::string& stem, const std::string& extension);
+  /// Opens a table with its '#' lines.
+  TableFile table(const std::string& name, const std::string& what, const std::string& units) const;
+  /// Draws "stem.png" unless plots are off.
+  void draw(const Plot& plot, const std::string& name);
+
+  std::string scene_name() const;
+  /// Stem of the files of a record: the kind, or the detector's name where there are several of the kind, then
+  /// observer and variant.
+  std::string stem(const std::string& kind, const ResultKey& key) const;
+  /// Words for titles: scene, detector if named, observer, variant.
+  std::string title(const std::string& kind, const ResultKey& key) const;
+  /// Kind of the detector named in a key.
+  std::string kind_of(const ResultKey& key) const;
+};
+
+/// Records of one detector, observer and variant (and band where asked), in the order of their orientations.
+template <class Record>
+std::vector<std::vector<const Record*>> groups(const std::vector<Record>& records) {
+  std::vector<std::vector<const Record*>> found;
+  for (const auto& record : records) {
+    const auto same = [&](const std::vector<const Record*>& group) {
+      const ResultKey& key = group.front()->key;
+      return key.detector == record.key.detector && key.observer == record.key.observer &&
+             key.variant == record.key.variant;
+    };
+    // Records come grouped: the last group nearly always fits.
+    auto place = found.rbegin();
+    while (place != found.rend() && !same(*place)) ++place;
+    if (place == found.rend()) {
+      found.push_back({&record});
+    } else {
+      place->push_back(&record);
+    }
+  }
+  return found;
+}
+
+/// A factor that brings `seconds` to a readable unit, and the unit's name.
+struct TimeUnit {
+  double per_second;
+  const char* name;
+};
+TimeUnit readable_time_unit(double seconds);
+
+/// Time of a record's orientation, s; 0 where unknown.
+double time_of(const Result& result, const ResultKey& key);
+
+/// "detector/observer/variant/band/orientation", the key of Reference::totals.
+std::string total_path(const ResultKey& key);
+
+/// One total of a result, as the summary lists them.
+struct Total {
+  ResultKey key;
+  double value = 0.0, standard_error = 0.0;
+  const char* unit = "";
+};
+/// All totals: of delay, then spectrometer, then |C| of pressure.
+std::vector<Total> totals(const Result& result);
+/// What `reference` says of the result's first total; NaN if nothing.
+double first_reference_total(const Result& result, const Reference& reference);
+
+void write_delay(Writer& writer);
+void write_error(Writer& writer);
+void write_spectrometer(Writer& writer);
+void write_pressure(Writer& writer);
+void write_images(Writer& writer);
+void write_summary(Writer& writer, const std::vector<MoreFiles>& more);
+
+}  // namespace clray::io
