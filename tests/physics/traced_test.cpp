@@ -9,7 +9,7 @@
 
 #include "reference/from_scene.hpp"
 #include "reference/sobol.hpp"
-#include "support/closed_forms.hpp"
+#include "support/checks.hpp"
 
 using namespace clray_test;
 namespace ref = clray_reference;

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+// Multiple scattering against closed forms: the hemispherical bowl, the cavity with a hole, the mirror dihedral, and
+// the energy books. Inside a sphere every patch sends the same share of its light to every other (form factor
+// dA/4πR²), which makes all orders of scattering a geometric series.
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "support/checks.hpp"
+
+using namespace clray_test;
+
+namespace {
+
+/// An inscribed mesh with steps of 2 pi/256 misses the sphere's areas by about h²/6 = 10⁻⁴; twice that is allowed.
+constexpr double kFacets = 2e-4;
+
+void check_near(const clray::Estimate& found, double exact, double bound, const char* what) {
+  INFO(what, ": found ", found.value, " +- ", found.standard_error, ", exact ", exact);
+  CHECK(std::fabs(found.value - exact) <= 4.0 * found.standard_error + kFacets * exact);
+  CHECK(std::fabs(found.value - exact) <= bound * exact);
+}
+
+clray::Scene bowl(double rho, int bounces, int log2_rays) {
+  clray::Scene scene = scene_of(bowl_mesh(256, 64, 1.0, kPi / 2, kPi), lambert(rho));
+  scene.trace.max_bounces = bounces;
+  return rays(scene, log2_rays);
+}
+
+void check_books(const clray::Result& result) {
+  const clray::EnergyBooks& e = result.energy;
+  CHECK(e.started == e.escaped + e.killed + e.capped);
+  CHECK(e.started > 0);
+  const double out = e.absorbed_m2.value + e.reflected_m2.value + e.truncated_m2.value - e.roulette_m2.value;
+  const double error = e.incident_m2.standard_error + e.absorbed_m2.standard_error + e.reflected_m2.standard_error +
+                       e.truncated_m2.standard_error + e.roulette_m2.standard_error;
+  INFO("incident ", e.incident_m2.value, ", accounted for ", out, " +- ", error);
+  CHECK(e.incident_m2.value > 0.0);
+  CHECK(std::fabs(e.incident_m2.value - out) <= 4.0 * error + 1e-9 * e.incident_m2.value);
+  CHECK(result.diagnostics.non_finite == 0);
+  CHECK(result.diagnostics.stack_overflow == 0);
+  CHECK(result.diagnostics.accumulator_overflow == 0);
+}
+
+}  // namespace
+
+TEST_CASE("Lambert bowl: intensity back to the station, one bounce, two, and all") {
+  const double rho = 0.8;
+  // Direct: as a sphere, 2 rho/3. Bounced light is even over the bowl: rho²/4 after one more bounce, each further
+  // one rho/2 of the last.
+  check_near(run(bowl(rho, 1, 18)).delay.at(0).intensity_m2_per_sr, 2.0 * rho / 3.0, 5e-4, "first bounce");
+  check_near(run(bowl(rho, 2, 20)).delay.at(0).intensity_m2_per_sr, 2.0 * rho / 3.0 + rho * rho / 4.0, 1e-3,
+             "two bounces");
+  check_near(run(bowl(rho, 64, 20)).delay.at(0).intensity_m2_per_sr,
+             2.0 * rho / 3.0 + rho * rho / 4.0 / (1.0 - rho / 2.0), 1e-3, "all bounces");
+}
+
+TEST_CASE("Lambert bowl: rho/2 of the light leaves at the first bounce, rho/(2 - rho) in all") {
+  for (double rho : {0.3, 0.8, 1.0}) {
+    CAPTURE(rho);
+    const clray::Result two = run(bowl(rho, 2, 20));
+    const double in = two.energy.incident_m2.value;
+    CHECK(in == doctest::Approx(kPi).epsilon(5e-4));
+    check_near(two.energy.reflected_m2, in * (rho / 2.0 + rho * rho / 4.0), 1e-3, "reflected in two bounces");
+    check_near(two.energy.truncated_m2, in * rho * rho / 4.0, 2e-3, "cut off after two bounces");
+    CHECK(two.diagnostics.truncated_energy_fraction == doctest::Approx(rho * rho / 4.0).epsilon(2e-3));
+    check_books(two);
+    const clray::Result all = run(bowl(rho, 64, 20));
+    check_near(all.energy.reflected_m2, in * rho / (2.0 - rho), 1e-3, "reflected in all");
+    check_books(all);
+  }
+}
+
+TEST_CASE("Lambert cavity with a hole of share f: rho f/(1 - rho (1 - f)) comes out") {
+  const double opening = radians(60.0), f = 0.5 * (1.0 - std::cos(opening));
+  for (double rho : {0.5, 0.9}) {
+    CAPTURE(rho);
+    clray::Material inside = lambert(rho);
+    inside.two_sided = false;  // the outside is black
+    clray::Scene scene = scene_of(bowl_mesh(256, 128, 1.0, opening, kPi), inside);
+    scene.trace.max_bounces = 64;
+    rays(scene, 20);
+    const clray::Result result = run(scene);
+    const double enters = kPi * std::sin(opening) * std::sin(opening);
+    check_near(result.energy.reflected_m2, enters * rho * f / (1.0 - rho * (1.0 - f)), 2e-3, "cavity");
+    check_books(result);
+  }
+}
+
+TEST_CASE("mirror dihedral of 90 degrees: all light comes back to the station, with one delay") {
+  auto mesh = std::make_shared<clray::Mesh>();
+  const double h = std::sqrt(0.5);
+  for (double y : {-0.5, 0.5})
+    for (const clray::Vec3& v : {clray::Vec3(-h, y, h), clray::Vec3(0, y, 0), clray::Vec3(h, y, h)})
+      mesh->vertices.push_back(v);
+  mesh->triangles = {{0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}};
+  mesh->triangle_slot = {0, 0, 0, 0};
+  mesh->material_slots = {""};
+  clray::Scene scene = scene_of(mesh, mirror(0.9));
+  window(scene, -1.1e-9, 1.0e-9, 21);  // zero delay is inside a bin
+  scene.trace.max_bounces = 2;
+  const double half_angle = 0.01;
+  scene.observers[0].acceptance_rad = half_angle;
+  const clray::Result result = run(scene);
+  const double solid_angle = 4.0 * kPi * std::pow(std::sin(half_angle / 2.0), 2);
+  const clray::DelayResult& found = result.delay.at(0);
+  check_estimate(found.intensity_m2_per_sr, 0.81 * 2.0 * h / solid_angle, 1e-6, "dihedral");
+  CHECK(found.bin_m2_per_sr.at(11) == doctest::Approx(found.intensity_m2_per_sr.value).epsilon(1e-9));
+  CHECK(std::fabs(found.mean_delay_s.value) <= 1e-18);
+  // Without a cone the same power is reported, not lost.
+  scene.observers[0].acceptance_rad = 0.0;
+  const clray::Result blind = run(scene);
+  CHECK(blind.delay.at(0).intensity_m2_per_sr.value == 0.0);
+  CHECK(blind.energy.unconnected_specular_m2.value == doctest::Approx(0.81 * 2.0 * h).epsilon(1e-6));
+  CHECK(!blind.warnings.empty());
+}
+
+TEST_CASE("energy books of concave bodies with every surface, grazing narrow peaks included") {
+  for (double n : {50.0, 1e6}) {
+    clray::Scene scene = scene_of(box_mesh(1, 1, 2), ashikhmin_shirley(0.5, 0.2, n));
+    add(scene, moved(plate_mesh(3, 1), {2.2, 0, 0.1}), ashikhmin_shirley(0.9, 0.1, n));
+    add(scene, moved(bowl_mesh(48, 12, 1.0, kPi / 2, kPi), {0, 0, 3}), lambert(0.9));
+    for (double degrees : {40.0, 89.0}) {
+      CAPTURE(n);
+      CAPTURE(degrees);
+      monostatic(scene, toward(radians(degrees), 0.3));
+      scene.trace.max_bounces = 8;
+      rays(scene, 19);
+      check_books(run(scene));
+    }
+  }
+}
