@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: Apache-2.0
+// The command line's options, their help texts and their checks; see arguments.hpp.
+#include "arguments.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <numeric>
+
+#include "clray/error.hpp"
+
+namespace clray::cli {
+
+namespace {
+
+constexpr const char* kDescription =
+    "clray traces light on space objects and says what comes back, each number with its error.\n"
+    "SCENE is a mesh (.obj .ply .stl .off) or a scene file (.toml). A bare mesh is seen from +z\n"
+    "by a laser station of 532 nm; directions X,Y,Z point away from the body, in its own frame.";
+
+constexpr const char* kFooter =
+    "\nExamples:\n"
+    "  clray satellite.obj                                   the pulse that a laser pulse becomes, to 1 %\n"
+    "  clray --observer 1,0,1 --target-error 0.1% box.obj    seen from the side, to 0.1 %\n"
+    "  clray --detector rgb --out picture satellite.obj      a picture\n"
+    "  clray --check scene.toml                              is the scene file right?\n"
+    "Exit status: 0 done, 1 a fault of clray, 2 wrong arguments, 3 unusable scene or mesh, 4 no usable\n"
+    "device, 5 the result cannot be written, 130 or 143 interrupted (what was finished is saved).";
+
+/// What the options write into before they are parsed as values.
+struct Texts {
+  std::string rays, target, time, source, observer, bins, bounces, seed, unit, group, slice, sampler;
+};
+
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t next = std::min({row[j], row[j + 1], diagonal - (a[i] == b[j] ? 1 : 0)}) + 1;
+      diagonal = row[j + 1];
+      row[j + 1] = next;
+    }
+  }
+  return row.back();
+}
+
+/// "; did you mean --x?" for an option that comes near, else nothing.
+std::string suggestion(const CLI::App& app, const std::string& word) {
+  const std::string name = word.substr(0, word.find('='));
+  std::string best;
+  std::size_t nearest = 3;
+  for (const auto* option : app.get_options()) {
+    for (const auto& known : option->get_lnames()) {
+      const std::size_t distance = edit_distance(name, "--" + known);
+      if (distance < nearest) {
+        nearest = distance;
+        best = "--" + known;
+      }
+    }
+  }
+  return best.empty() ? "" : "; did you mean " + best + "?";
+}
+
+CLI::Option* text_option(CLI::App& app, const std::string& name, std::string& value, const std::string& value_name,
+                         const std::string& help, const std::string& group) {
+  return app.add_option(name, value, help)->type_name(value_name)->group(group)->expected(1);
+}
+
+void add_options(CLI::App& app, Arguments& a, Texts& t) {
+  const std::string scene = "Scene", run = "Run", output = "Output", ask = "Questions", test = "For tests of identity";
+  app.add_option("SCENE", a.scene, "mesh (.obj .ply .stl .off) or scene file (.toml)")->type_name("");
+  app.add_option("--detector", a.scene_options.detectors,
+                 "what is measured, may be repeated: delay, spectrometer, pressure, rgb, hyperspectral; replaces the "
+                 "scene file's list [delay for a mesh]")
+      ->type_name("KIND")
+      ->group(scene)
+      ->expected(1)
+      ->allow_extra_args(false)
+      ->take_all();
+  text_option(app, "--source", t.source, "X,Y,Z", "direction toward the light [0,0,1 for a mesh]", scene);
+  text_option(app, "--observer", t.observer, "X,Y,Z|source",
+              "direction toward who looks, or 'source' for a station that sees its own laser [source for a mesh]",
+              scene);
+  text_option(app, "--material", a.scene_options.material, "TEXT",
+              "one material for everything, such as \"lambert rho=0.3\" or \"ashikhmin-shirley rho=0.5 d=0.2 n=50\" "
+              "(see --list brdf)",
+              scene);
+  text_option(app, "--length-unit", t.unit, "UNIT", "unit of mesh files: m, cm, mm, in, ft or a number of metres [m]",
+              scene);
+  text_option(app, "--bins", t.bins, "N", "bins of the delay histogram, 1 to 1e7 [512]", scene);
+  text_option(app, "--max-bounces", t.bounces, "N", "surface interactions, 1 to 64 [1]", scene);
+
+  text_option(app, "--device", a.device, "cpu|gpu|all|INDEX|NAME",
+              "where to compute, by kind, number or part of the name [a GPU if there is one, else the CPU]", run);
+  text_option(app, "--rays", t.rays, "N", "primary rays per orientation: 65536, 1e6, 2^22, 4M; rounded up to 16*2^k",
+              run);
+  text_option(app, "--target-error", t.target, "P%",
+              "stop when the 95 % interval is within P % of the value [1%, with at least 2^22 rays]", run);
+  text_option(app, "--time-limit", t.time, "T", "stop tracing after 30, 30s, 500ms, 5m, 2h with what is finished", run);
+  text_option(app, "--seed", t.seed, "N",
+              "seed of all random numbers; the same seed gives the same result, bit for bit [1]", run);
+  text_option(app, "--sampler", t.sampler, "sobol|random", "how rays are spread [sobol]", run);
+
+  text_option(app, "--out", a.out, "DIR",
+              "folder of the result; an older clray result there is replaced, nothing else is [clray-out/<scene>]",
+              output);
+  text_option(app, "--reference", a.reference, "FILE", "a summary.json or delay.csv to measure the true error against",
+              output);
+  app.add_flag("--no-plots", a.no_plots, "no plots (tables and pictures are still written)")->group(output);
+  app.add_flag("--quiet", a.quiet, "no progress and no closing table, only the device, the total and warnings")
+      ->group(output);
+  app.add_flag("--explain", a.explain, "what was compiled in and what was left out for this scene, and why")
+      ->group(output);
+
+  app.add_option("--list", a.list, "print the devices, or the rows of a table, and end")
+      ->type_name("devices|brdf|shape|detector")
+      ->group(ask)
+      ->expected(1);
+  app.add_flag("--check", a.check, "check the scene, print what was understood, trace nothing")->group(ask);
+  app.add_flag("--dump-kernel", a.dump_kernel, "print the OpenCL program that would run for the scene")->group(ask);
+  app.set_version_flag("--version", "clray " CLRAY_VERSION, "print the version and end")->group(ask);
+  app.set_help_flag("-h,--help", "print this help and end")->group(ask);
+
+  app.add_flag("--no-specialise", a.no_specialise, "run the generic program: same digest, slower")->group(test);
+  app.add_flag("--force-bistatic", a.force_bistatic, "shadow rays even where the observer is at the source")
+      ->group(test);
+  text_option(app, "--work-group", t.group, "N", "work-items per work-group, 1 to 1024 [64]", test);
+  text_option(app, "--slice-points", t.slice, "N", "points per replicate and launch [sized to time]", test);
+}
+
+int small_count(const std::string& text, const std::string& option, std::uint64_t most) {
+  const std::uint64_t value = parse_count(text, option);
+  if (value > most) {
+    throw Error(ErrorCode::usage, "'" + text + "' is too large; expected 1 to " + std::to_string(most), option);
+  }
+  return static_cast<int>(value);
+}
+
+void parse_values(Arguments& a, const Texts& t) {
+  if (!t.rays.empty()) a.rays = parse_count(t.rays, "--rays");
+  if (!t.target.empty()) a.target_error_percent = parse_percent(t.target, "--target-error");
+  if (!t.time.empty()) a.time_limit_s = parse_duration(t.time, "--time-limit");
+  if (!t.bins.empty()) a.scene_options.bins = small_count(t.bins, "--bins", 10000000);
+  if (!t.bounces.empty()) a.max_bounces = small_count(t.bounces, "--max-bounces", 64);
+  if (!t.group.empty()) a.work_group = small_count(t.group, "--work-group", 1024);
+  if (!t.slice.empty()) a.slice_points = parse_count(t.slice, "--slice-points");
+  if (!t.seed.empty()) a.seed = t.seed == "0" ? 0 : parse_count(t.seed, "--seed");
+  if (!t.unit.empty()) a.scene_options.length_unit_m = parse_length_unit(t.unit, "--length-unit");
+  if (!t.source.empty()) a.scene_options.source = parse_direction(t.source, "--source");
+  if (t.observer == "source") {
+    a.scene_options.observer_at_source = true;
+  } else if (!t.observer.empty()) {
+    a.scene_options.observer = parse_direction(t.observer, "--observer");
+  }
+  if (!t.sampler.empty()) {
+    if (t.sampler != "sobol" && t.sampler != "random") {
+      throw Error(ErrorCode::usage, "'" + t.sampler + "' is not a sampler; expected sobol or random", "--sampler");
+    }
+    a.sobol = t.sampler == "sobol";
+  }
+}
+
+/// CLI11's words about what is wrong, in ours.
+[[noreturn]] void complain(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
+  if (dynamic_cast<const CLI::ExtrasError*>(&error)) {
+    for (const auto& word : app.remaining()) {
+      if (word.size() > 1 && word[0] == '-') {
+        throw Error(ErrorCode::usage,
+                    "there is no option " + word + suggestion(app, word) + " (clray --help lists all)");
+      }
+    }
+    const auto extra = app.remaining();
+    throw Error(ErrorCode::usage,
+                "one scene at a time: '" + (extra.empty() ? "?" : extra.front()) + "' is one too many");
+  }
+  (void)argc;
+  (void)argv;
+  throw Error(ErrorCode::usage, std::string(error.what()) + " (clray --help explains the options)");
+}
+
+void check_whole(const Arguments& a) {
+  if (!a.list.empty()) {
+    const bool known = a.list == "devices" || a.list == "brdf" || a.list == "shape" || a.list == "detector";
+    if (!known)
+      throw Error(ErrorCode::usage, "there is no list '" + a.list + "'; expected devices, brdf, shape or detector",
+                  "--list");
+    return;
+  }
+  if (a.scene.empty()) {
+    throw Error(ErrorCode::usage,
+                "no scene given: name a mesh (.obj .ply .stl .off) or a scene file (.toml), or see clray --help");
+  }
+}
+
+}  // namespace
+
+Arguments parse_arguments(int argc, char** argv) {
+  Arguments arguments;
+  for (int i = 0; i < argc; ++i) {
+    arguments.command += (i ? " " : "") + std::string(argv[i]);
+  }
+  CLI::App app(kDescription, "clray");
+  app.footer(kFooter);
+  app.get_formatter()->column_width(34);
+  Texts texts;
+  add_options(app, arguments, texts);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::CallForHelp&) {
+    std::fputs(app.help().c_str(), stdout);
+    arguments.finished = true;
+    return arguments;
+  } catch (const CLI::CallForVersion&) {
+    std::puts("clray " CLRAY_VERSION);
+    arguments.finished = true;
+    return arguments;
+  } catch (const CLI::ParseError& error) {
+    complain(app, error, argc, argv);
+  }
+  parse_values(arguments, texts);
+  check_whole(arguments);
+  return arguments;
+}
+
+void apply(const Arguments& a, Scene& scene) {
+  TraceOptions& trace = scene.trace;
+  // A count or a target on the command line stands instead of the file's, not beside it.
+  if (a.rays || a.target_error_percent) {
+    trace.rays = a.rays.value_or(0);
+    trace.target_error_percent = a.target_error_percent.value_or(0.0);
+  }
+  if (a.time_limit_s) trace.time_limit_s = *a.time_limit_s;
+  if (a.max_bounces) trace.max_bounces = *a.max_bounces;
+  if (a.seed) trace.seed = *a.seed;
+  if (a.sobol) trace.sobol = *a.sobol;
+  if (a.no_specialise) trace.specialise = false;
+  if (a.force_bistatic) trace.force_bistatic = true;
+  if (a.work_group) trace.work_group_size = static_cast<std::uint32_t>(*a.work_group);
+  if (a.slice_points) trace.slice_points = *a.slice_points;
+}
+
+}  // namespace clray::cli

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// The command line's arguments: parsed, checked, and applied to a scene. Units as typed by the user are turned into
+// those of the public interface here.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "clray/scene.hpp"
+
+namespace clray::cli {
+
+/// What the user asked for.
+struct Arguments {
+  std::string scene, device, list, out, reference, command;
+  bool explain = false, no_plots = false, quiet = false, dump_kernel = false, check = false;
+  SceneOptions scene_options;
+
+  std::optional<std::uint64_t> rays, seed, slice_points;
+  std::optional<double> target_error_percent, time_limit_s;
+  std::optional<int> max_bounces, work_group;
+  std::optional<bool> sobol;
+  bool no_specialise = false, force_bistatic = false;
+
+  bool finished = false;  ///< help or version were printed: nothing is left to do
+};
+
+/// Throws Error(usage). Prints help and version itself.
+Arguments parse_arguments(int argc, char** argv);
+
+/// The command line's word over the scene file's.
+void apply(const Arguments& arguments, Scene& scene);
+
+/// "1e6", "2^22", "4M" (k, M, G = 10^3, 10^6, 10^9). Throws Error(usage) naming `option`.
+std::uint64_t parse_count(const std::string& text, const std::string& option);
+/// "30", "30s", "500ms", "5m", "2h", in seconds.
+double parse_duration(const std::string& text, const std::string& option);
+/// "1" or "1%".
+double parse_percent(const std::string& text, const std::string& option);
+/// "X,Y,Z", as a unit vector.
+Vec3 parse_direction(const std::string& text, const std::string& option);
+/// "m", "cm", "mm", "in", "ft" or a number of metres.
+double parse_length_unit(const std::string& text, const std::string& option);
+
+}  // namespace clray::cli

@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the command line shows a person; see report.hpp. Text is UTF-8; columns are counted in characters.
+#include "report.hpp"
+
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace clray::cli {
+
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+std::size_t characters(const std::string& text) {
+  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xc0) != 0x80; }));
+}
+
+/// Text cells in aligned columns, two spaces between.
+class Columns {
+ public:
+  void row(std::vector<std::string> cells) { rows_.push_back(std::move(cells)); }
+  std::string text(const std::string& indent) const {
+    std::vector<std::size_t> widths;
+    for (const auto& cells : rows_) {
+      widths.resize(std::max(widths.size(), cells.size()));
+      for (std::size_t i = 0; i < cells.size(); ++i) widths[i] = std::max(widths[i], characters(cells[i]));
+    }
+    std::string all;
+    for (const auto& cells : rows_) {
+      all += indent;
+      for (std::size_t i = 0; i < cells.size(); ++i) {
+        all += cells[i];
+        if (i + 1 < cells.size()) all += std::string(widths[i] - characters(cells[i]) + 2, ' ');
+      }
+      all += '\n';
+    }
+    return all;
+  }
+
+ private:
+  std::vector<std::vector<std::string>> rows_;
+};
+
+std::string with_unit(const std::string& number, const char* unit) {
+  return number == "n/a" ? number : number + " " + unit;
+}
+
+std::string amount(const Estimate& e, double scale, const char* unit) {
+  return with_unit(format_with_error(e.value * scale, e.standard_error * scale), unit);
+}
+
+std::string percent_error(const Estimate& e) {
+  if (!(e.value != 0.0) || !std::isfinite(e.value)) return "n/a";
+  return fmt::format("{:.2g} %", 100.0 * 0.5 * (e.high - e.low) / std::fabs(e.value));
+}
+
+}  // namespace
+
+std::string short_count(double value) {
+  if (value >= 1e9) return fmt::format("{:.3g} G", value * 1e-9);
+  if (value >= 1e6) return fmt::format("{:.3g} M", value * 1e-6);
+  if (value >= 1e4) return fmt::format("{:.3g} k", value * 1e-3);
+  return fmt::format("{:.0f}", value);
+}
+
+std::string short_time(double seconds) {
+  if (!std::isfinite(seconds)) return "?";
+  if (seconds < 0.0995) return fmt::format("{:.0f} ms", seconds * 1e3);
+  if (seconds < 99.5) return fmt::format("{:.{}f} s", seconds, seconds < 9.95 ? 2 : 1);
+  const long whole = std::lround(seconds);
+  if (whole < 3600) return fmt::format("{} min {} s", whole / 60, whole % 60);
+  return fmt::format("{} h {} min", whole / 3600, whole / 60 % 60);
+}
+
+ProgressBar::ProgressBar(bool wanted) : wanted_(wanted && ::isatty(STDERR_FILENO) == 1) {}
+
+void ProgressBar::show(const Progress& progress) {
+  const auto now = std::chrono::steady_clock::now();
+  if (!wanted_ || (shown_ && now - last_ < std::chrono::milliseconds(100))) return;
+  last_ = now;
+  const double fraction = std::clamp(std::isfinite(progress.fraction) ? progress.fraction : 0.0, 0.0, 1.0);
+  constexpr int kWidth = 24;
+  const int full = static_cast<int>(fraction * kWidth + 0.5);
+  std::string bar;
+  for (int i = 0; i < kWidth; ++i) bar += i < full ? "█" : "·";
+  const std::string error =
+      std::isfinite(progress.relative_error) ? fmt::format("±{:.2g} %", 100.0 * progress.relative_error) : "± ?";
+  std::string line = fmt::format("{:<8} {} {:3.0f} %  {} rays  {} rays/s  {}  {} left", progress.phase, bar,
+                                 100.0 * fraction, short_count(static_cast<double>(progress.rays)),
+                                 short_count(progress.rays_per_s), error, short_time(progress.seconds_left));
+  winsize window{};
+  const std::size_t width = ::ioctl(STDERR_FILENO, TIOCGWINSZ, &window) == 0 && window.ws_col > 0 ? window.ws_col : 80;
+  // A wrapped line cannot be taken back; cut it, between characters.
+  while (characters(line) >= width) {
+    while ((line.back() & 0xc0) == 0x80) line.pop_back();
+    line.pop_back();
+  }
+  std::fprintf(stderr, "\r\033[K%s", line.c_str());
+  std::fflush(stderr);
+  shown_ = true;
+}
+
+void ProgressBar::clear() {
+  if (!shown_) return;
+  std::fputs("\r\033[K", stderr);
+  std::fflush(stderr);
+  shown_ = false;
+}
+
+std::string device_line(const DeviceInfo& device) {
+  return fmt::format("{} ({}, {})", device.name, device.type, device.platform);
+}
+
+std::string device_table(const std::vector<DeviceInfo>& devices) {
+  Columns columns;
+  columns.row({"index", "type", "name", "platform", "driver", "units", "memory", "usable"});
+  for (const auto& d : devices) {
+    columns.row({std::to_string(d.index), d.type, d.name, d.platform, d.driver, std::to_string(d.compute_units),
+                 fmt::format("{:.1f} GiB", d.memory_GiB), d.fp64 ? "yes" : "no: lacks fp64"});
+  }
+  return columns.text("");
+}
+
+std::string explanation(const Result& result) {
+  std::string text = "Kept, because the scene needs it:\n";
+  for (const auto& line : result.kept) text += "  + " + line + "\n";
+  if (result.kept.empty()) text += "  (nothing)\n";
+  text += "Left out:\n";
+  for (const auto& line : result.left_out) text += "  - " + line + "\n";
+  if (result.left_out.empty()) text += "  (nothing)\n";
+  return text;
+}
+
+namespace {
+
+std::string member(const ResultKey& key, std::size_t orientations) {
+  std::string name = key.detector;
+  for (const auto& part : {key.observer, key.variant, key.band}) {
+    if (!part.empty()) name += ", " + part;
+  }
+  if (orientations > 1) name += ", #" + std::to_string(key.orientation);
+  return name;
+}
+
+/// Rows beyond which a table no longer fits a screen; the files have them all.
+constexpr std::size_t kMostRows = 24;
+
+std::string more_rows(std::size_t count) {
+  return count > kMostRows ? fmt::format("  … and {} more in the files\n", count - kMostRows) : "";
+}
+
+void one_pulse(Columns& table, const DelayResult& delay) {
+  const auto& a = delay.intensity_m2_per_sr;
+  table.row({"A", amount(a, 1.0, "m²/sr") + "   (95 %: ±" + percent_error(a) + ")"});
+  table.row({"cross-section", amount(a, 4.0 * kPi, "m²")});
+  table.row({"mean delay", amount(delay.mean_delay_s, 1e9, "ns")});
+  table.row({"rms width", amount(delay.rms_width_s, 1e9, "ns")});
+}
+
+std::string many_pulses(const Result& result) {
+  Columns table;
+  table.row({"delay", "A (m²/sr)", "cross-section (m²)", "mean delay (ns)", "rms width (ns)"});
+  const auto number = [](const Estimate& e, double scale) {
+    return format_with_error(e.value * scale, e.standard_error * scale);
+  };
+  for (std::size_t i = 0; i < std::min(result.delay.size(), kMostRows); ++i) {
+    const auto& delay = result.delay[i];
+    table.row({member(delay.key, result.orientations.size()), number(delay.intensity_m2_per_sr, 1.0),
+               number(delay.intensity_m2_per_sr, 4.0 * kPi), number(delay.mean_delay_s, 1e9),
+               number(delay.rms_width_s, 1e9)});
+  }
+  return "\n" + table.text("  ") + more_rows(result.delay.size());
+}
+
+std::string bands(const Result& result) {
+  if (result.spectrometer.empty()) return "";
+  Columns table;
+  table.row({"spectrometer", "band (nm)", "A (m²/sr)", "received (W/m²)", "AB magnitude", "phase angle (°)"});
+  for (std::size_t i = 0; i < std::min(result.spectrometer.size(), kMostRows); ++i) {
+    const auto& s = result.spectrometer[i];
+    ResultKey key = s.key;
+    key.band.clear();
+    const std::string magnitude = format_with_error(s.magnitude_AB, s.magnitude_standard_error);
+    const bool received = s.received_W_m2 > 0.0;
+    table.row({member(key, result.orientations.size()), fmt::format("{:g}-{:g}", s.band.low_nm, s.band.high_nm),
+               format_with_error(s.intensity_m2_per_sr.value, s.intensity_m2_per_sr.standard_error),
+               received ? format_with_error(s.received_W_m2, s.received_W_m2_standard_error) : "n/a (no range)",
+               magnitude, fmt::format("{:.4g}", s.phase_angle_rad * 180.0 / kPi)});
+  }
+  return "\n" + table.text("  ") + more_rows(result.spectrometer.size());
+}
+
+std::string forces(const Result& result) {
+  if (result.pressure.empty()) return "";
+  Columns table;
+  table.row({"pressure", "", "x", "y", "z"});
+  const auto three = [](const VectorEstimate& v, int axis) {
+    return format_with_error(v.value[axis], v.standard_error[axis]);
+  };
+  for (std::size_t i = 0; i < std::min(result.pressure.size(), kMostRows / 2); ++i) {
+    const auto& p = result.pressure[i];
+    const auto& c = p.coefficient_m2;
+    const auto& t = p.torque_coefficient_m3;
+    table.row(
+        {member(p.key, result.orientations.size()), "force coefficient (m²)", three(c, 0), three(c, 1), three(c, 2)});
+    table.row({"", "torque coefficient (m³)", three(t, 0), three(t, 1), three(t, 2)});
+  }
+  return "\n" + table.text("  ") +
+         (result.pressure.size() > kMostRows / 2 ? more_rows(kMostRows + result.pressure.size() - kMostRows / 2) : "");
+}
+
+std::string file_list(const std::vector<std::string>& files) {
+  std::string list;
+  for (std::size_t i = 0; i < std::min<std::size_t>(files.size(), 12); ++i) list += (i ? ", " : "") + files[i];
+  if (files.size() > 12) list += fmt::format(", … ({} in all)", files.size());
+  return list;
+}
+
+}  // namespace
+
+std::string totals_line(const Result& result) {
+  std::string text;
+  for (const auto& delay : result.delay) {
+    text += member(delay.key, result.orientations.size()) + ": A = " + amount(delay.intensity_m2_per_sr, 1.0, "m²/sr") +
+            "\n";
+  }
+  return text;
+}
+
+std::string closing_table(const Result& result, const Scene& scene, const std::string& folder,
+                          const std::vector<std::string>& files, const Reference* reference) {
+  Columns table;
+  table.row({"scene", scene.path.empty() ? scene.name : scene.path});
+  table.row({"device", device_line(result.device)});
+  table.row({"triangles", fmt::format("{}", result.mesh.triangles) +
+                              (result.mesh.triangles ? fmt::format(", {:.6g} m²", result.mesh.area_m2) : "")});
+  table.row({"extent", fmt::format("{:.6g} m across", result.extent_m)});
+  if (result.orientations.size() > 1) table.row({"orientations", std::to_string(result.orientations.size())});
+  table.row({"rays", short_count(static_cast<double>(result.rays)) +
+                         (result.orientations.size() > 1 ? " per orientation" : "") +
+                         (result.rays_total > result.rays * std::max<std::size_t>(result.orientations.size(), 1)
+                              ? ", " + short_count(static_cast<double>(result.rays_total)) + " in all"
+                              : "")});
+  const auto& s = result.seconds;
+  table.row({"time", fmt::format("{} (load {}, BVH {}, compile {}, trace {})", short_time(s.total), short_time(s.load),
+                                 short_time(s.bvh), short_time(s.compile), short_time(s.trace))});
+  if (result.delay.size() == 1) one_pulse(table, result.delay.front());
+  if (reference) {
+    const double error = relative_true_error(result, *reference);
+    table.row({"true error", std::isfinite(error) ? fmt::format("{:.3g} % against {}", 100.0 * error, reference->file)
+                                                  : "n/a: " + reference->file + " has none of these totals"});
+  }
+  table.row({"digest", fmt::format("{:016x}", result.digest)});
+  Columns tail;
+  tail.row({"files", folder + "/: " + file_list(files)});
+  return table.text("  ") + (result.delay.size() > 1 ? many_pulses(result) : "") + bands(result) + forces(result) +
+         tail.text(result.delay.size() > 1 || !result.spectrometer.empty() || !result.pressure.empty() ? "\n  " : "  ");
+}
+
+}  // namespace clray::cli

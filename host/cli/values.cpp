@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+// Values as people type them: counts, durations, percentages, directions, units; see arguments.hpp. Independent of the
+// locale: a decimal point is a point.
+#include <charconv>
+#include <cmath>
+
+#include "arguments.hpp"
+#include "clray/error.hpp"
+
+namespace clray::cli {
+
+namespace {
+
+[[noreturn]] void reject(const std::string& option, const std::string& text, const std::string& expected) {
+  throw Error(ErrorCode::usage, "'" + text + "' is not understood; expected " + expected, option);
+}
+
+/// Number at the start of `text` and what follows it.
+bool leading_number(const std::string& text, double& value, std::string& rest) {
+  const char* begin = text.data();
+  const char* const end = begin + text.size();
+  if (begin != end && *begin == '+') ++begin;
+  const auto [after, error] = std::from_chars(begin, end, value);
+  if (error != std::errc{} || !std::isfinite(value)) return false;
+  rest.assign(after, end);
+  return true;
+}
+
+double number(const std::string& text, const std::string& option, const std::string& expected) {
+  double value = 0.0;
+  std::string rest;
+  if (!leading_number(text, value, rest) || !rest.empty()) reject(option, text, expected);
+  return value;
+}
+
+}  // namespace
+
+std::uint64_t parse_count(const std::string& text, const std::string& option) {
+  const std::string expected = "a whole number of at least 1, such as 65536, 1e6, 2^22 or 4M";
+  std::uint64_t whole = 0;
+  const auto [after, error] = std::from_chars(text.data(), text.data() + text.size(), whole);
+  if (error == std::errc{} && after == text.data() + text.size()) {
+    if (whole == 0) reject(option, text, expected);
+    return whole;
+  }
+  double value = 0.0;
+  std::string rest;
+  if (!leading_number(text, value, rest)) reject(option, text, expected);
+  if (!rest.empty() && rest[0] == '^') {
+    const double power = number(rest.substr(1), option, expected);
+    value = std::pow(value, power);
+    rest.clear();
+  }
+  if (rest == "k" || rest == "K")
+    value *= 1e3;
+  else if (rest == "M")
+    value *= 1e6;
+  else if (rest == "G")
+    value *= 1e9;
+  else if (!rest.empty())
+    reject(option, text, expected);
+  if (!(value >= 1.0) || value != std::floor(value)) reject(option, text, expected);
+  if (value > 9.0e18) reject(option, text, expected + ", at most 9e18");
+  return static_cast<std::uint64_t>(value);
+}
+
+double parse_duration(const std::string& text, const std::string& option) {
+  const std::string expected = "a time above 0, such as 30, 30s, 500ms, 5m or 2h";
+  double value = 0.0;
+  std::string unit;
+  if (!leading_number(text, value, unit)) reject(option, text, expected);
+  if (unit == "ms")
+    value *= 1e-3;
+  else if (unit == "m" || unit == "min")
+    value *= 60.0;
+  else if (unit == "h")
+    value *= 3600.0;
+  else if (!unit.empty() && unit != "s")
+    reject(option, text, expected);
+  if (!(value > 0.0)) reject(option, text, expected);
+  return value;
+}
+
+double parse_percent(const std::string& text, const std::string& option) {
+  const std::string expected = "a percentage above 0 and up to 100, such as 1 or 0.1%";
+  const bool sign = !text.empty() && text.back() == '%';
+  const double value = number(sign ? text.substr(0, text.size() - 1) : text, option, expected);
+  if (!(value > 0.0) || value > 100.0) reject(option, text, expected);
+  return value;
+}
+
+Vec3 parse_direction(const std::string& text, const std::string& option) {
+  const std::string expected = "three numbers X,Y,Z of the body frame, not all zero, such as 0,0,1";
+  Vec3 v{0.0};
+  std::size_t begin = 0;
+  for (int i = 0; i < 3; ++i) {
+    const std::size_t comma = text.find(',', begin);
+    if ((comma == std::string::npos) != (i == 2)) reject(option, text, expected);
+    v[i] = number(text.substr(begin, comma - begin), option, expected);
+    begin = comma + 1;
+  }
+  // Scaled first, so that neither tiny nor huge components overflow when squared.
+  const double largest = std::fmax(std::fmax(std::fabs(v.x), std::fabs(v.y)), std::fabs(v.z));
+  if (!(largest > 0.0)) reject(option, text, expected);
+  v /= largest;
+  const double length = std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
+  return v / length;
+}
+
+double parse_length_unit(const std::string& text, const std::string& option) {
+  if (text == "m") return 1.0;
+  if (text == "cm") return 0.01;
+  if (text == "mm") return 0.001;
+  if (text == "in") return 0.0254;
+  if (text == "ft") return 0.3048;
+  const std::string expected = "m, cm, mm, in, ft or a number of metres";
+  const double value = number(text, option, expected);
+  if (!(value > 0.0)) reject(option, text, expected);
+  return value;
+}
+
+}  // namespace clray::cli
