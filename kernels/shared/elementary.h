@@ -141,7 +141,7 @@ CLRAY_FN f64 el_log_parts(f64 x, f64* low) {
   const f64 s = f / d;
   const f64 s_lo = fma(-s, d_lo, fma(-s, d, f)) / d;
   const f64 z = s * s;
-  const f64 z_lo = fma(s, s, -z) + 2.0 * s * s_lo;
+  const f64 z_lo = fma(2.0 * s, s_lo, fma(s, s, -z));
   f64 g = 0.06456804803218566;
   g = fma(g, z, 0.066429790438985517);
   g = fma(g, z, 0.076927873884135675);
@@ -179,7 +179,7 @@ CLRAY_FN f64 el_pow(f64 x, f64 y) {
   const f64 p = y * high;
   if (p > 710.0) return EL_INF;
   if (p < -746.0) return 0.0;
-  return el_exp_parts(p, fma(y, high, -p) + y * low);
+  return el_exp_parts(p, fma(y, low, fma(y, high, -p)));
 }
 
 /// sin(r + r_lo) and cos(r + r_lo) for |r| <= pi/4.
