@@ -3,7 +3,8 @@
 // H·o_y, W), D = (H·d_x, H·d_y, K·d_z), W = H·radius(o_z), K = p[2] - p[0] and the form <u,v> = u1v1 + u2v2 - u3v3 a
 // ray is inside where <P,P> + 2t<P,D> + t²<D,D> <= 0. The discriminant <P,D>² - <P,P><D,D> is m13² + m23² - m12² in the
 // minors of (P, D) (Lagrange's identity of that form; minors by differences of products), a product of sum and
-// difference; where both terms of the plain form are positive it is that.
+// difference; where both terms of the plain form are positive it is that. A far origin is first moved along the ray to
+// where it passes the narrow end, so that the form is not near cancellation around an apex.
 #ifndef CLRAY_SHAPE_CONE_CL
 #define CLRAY_SHAPE_CONE_CL
 #include "shape/span.h"
@@ -46,13 +47,26 @@ CLRAY_FN ShapeSpan span_cone(vec3 P, vec3 D) {
   return D.z > 0.0 ? span_make(s.leave, CLRAY_SPAN_FAR) : span_make(-CLRAY_SPAN_FAR, s.enter);
 }
 
+/// P of a point.
+CLRAY_FN vec3 cone_vector(const CLRAY_GLOBAL f64* p, vec3 x) {
+  return v3(p[1] * x.x, p[1] * x.y, fma(p[0], p[1] - x.z, p[2] * x.z));
+}
+
 CLRAY_FN i32 shape_cone_intersect(const CLRAY_GLOBAL f64* p, vec3 o, vec3 d, f64 t_max, f64* t, u32* part) {
   const f64 height = p[1];
-  const vec3 P = v3(height * o.x, height * o.y, fma(p[0], height - o.z, p[2] * o.z));
+  const f64 narrow = p[2] < p[0] ? height : 0.0;
+  f64 shift = fma(narrow - o.z, d.z, difference_of_products(-o.x, d.x, o.y, d.y));
+  // Only from outside a ball about the cone: nearer origins need the sign of their own <P,P>.
+  const f64 wide = f64_max(p[0], p[2]);
+  if (shift <= sqrt(fma(wide, wide, height * height))) shift = 0.0;
+  o = v3_fma(shift, d, o);
+  const vec3 P = cone_vector(p, o);
   const vec3 D = v3(height * d.x, height * d.y, (p[2] - p[0]) * d.z);
   // The nappe itself ends at an apex: a slab there could only round a hit away.
   const f64 top = p[2] > 0.0 ? height : CLRAY_SPAN_FAR;
-  const ShapeSpan s = span_slab(span_cone(P, D), o.z, d.z, 0.0, top, 1u, 2u);
+  ShapeSpan s = span_slab(span_cone(P, D), o.z, d.z, 0.0, top, 1u, 2u);
+  s.enter += shift;
+  s.leave += shift;
   return span_hit(s, p[3] != 0.0, t_max, t, part);
 }
 
@@ -65,8 +79,17 @@ CLRAY_FN ShapeSurface shape_cone_surface(const CLRAY_GLOBAL f64* p, vec3 o, vec3
   if (part == 0u) {
     const vec3 x = v3_fma(t, d, o);
     const f64 rho = sqrt(fma(x.x, x.x, x.y * x.y));
-    const f64 cos_phi = rho > 0.0 ? x.x / rho : 1.0;
-    const f64 sin_phi = rho > 0.0 ? x.y / rho : 0.0;
+    f64 cos_phi = x.x / rho;
+    f64 sin_phi = x.y / rho;
+    if (rho <= CLRAY_SHAPE_ROUND * (t + height)) {
+      // At an apex the azimuth is lost in rounding; the face met is the one turned to a ray from outside, away from
+      // one from inside.
+      const vec3 P = cone_vector(p, o);
+      const f64 across = sqrt(fma(d.x, d.x, d.y * d.y));
+      const f64 turn = cone_form(P) < 0.0 && P.z > 0.0 ? across : -across;
+      cos_phi = across > 0.0 ? d.x / turn : 1.0;
+      sin_phi = across > 0.0 ? d.y / turn : 0.0;
+    }
     // Nearest point of the generator, as a share of its length; kept off the rims, and off an apex by so much that a
     // step inward does not come out on the other side.
     const f64 off = f64_min(2.0 * s.error / height, 0.25);

@@ -42,8 +42,14 @@ CLRAY_FN ShapeSurface shape_paraboloid_surface(const CLRAY_GLOBAL f64* p, vec3 o
   const f64 c = paraboloid_c(p);
   ShapeSurface s;
   vec3 x = v3_fma(t, d, o);
-  const f64 rho2 = fma(x.x, x.x, x.y * x.y);
+  f64 rho2 = fma(x.x, x.x, x.y * x.y);
   (void)part;
+  if (rho2 > p[0] * p[0]) {
+    const f64 shrink = p[0] / sqrt(rho2);
+    x.x *= shrink;
+    x.y *= shrink;
+    rho2 = p[0] * p[0];
+  }
   // Onto the surface along z where it is flat, along the radius where it is steep.
   if (2.0 * sqrt(rho2) <= c) {
     x.z = f64_min(rho2 / c, p[1]);
