@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Checks of STL and OFF files before OpenMesh reads them: sizes against counts, finite numbers, indices in range.
+#include <algorithm>
+#include <array>
+#include <cfloat>
+#include <charconv>
 #include <cmath>
 #include <cstring>
 
@@ -50,6 +54,16 @@ void expect(TextCursor& text, std::string_view expected) {
   }
 }
 
+// A coordinate that OpenMesh's float can hold.
+double coordinate(TextCursor& text, const char* what) {
+  const double value = text.number(what);
+  if (std::fabs(value) > static_cast<double>(FLT_MAX))
+    text.fail(std::string(what) + " is beyond 3.4e38; less was expected");
+  return value;
+}
+
+constexpr std::array<const char*, 3> kAxes = {"x of a vertex", "y of a vertex", "z of a vertex"};
+
 FormatClaim check_stl_ascii(const std::string& content, const std::string& path) {
   FormatClaim claim;
   TextCursor text(content, path);
@@ -69,7 +83,7 @@ FormatClaim check_stl_ascii(const std::string& content, const std::string& path)
       text.next_line();
       for (int corner = 0; corner < 3; ++corner) {
         expect(text, "vertex");
-        for (const char* what : {"x of a vertex", "y of a vertex", "z of a vertex"}) text.number(what);
+        for (const char* what : kAxes) coordinate(text, what);
         if (text.more_on_line()) text.fail("more than three coordinates; the end of the line was expected");
         text.next_line();
       }
@@ -86,14 +100,37 @@ FormatClaim check_stl_ascii(const std::string& content, const std::string& path)
   return claim;
 }
 
-void off_faces(TextCursor& text, const FormatClaim& claim) {
+void off_vertices(TextCursor& text, FormatClaim& claim) {
+  char line[128];
+  for (std::uint64_t v = 0; v < claim.vertices; ++v) {
+    if (!text.next_filled_line())
+      text.fail("the file ends after " + std::to_string(v) + " vertices; " + std::to_string(claim.vertices) +
+                " were expected");
+    Vec3 point;
+    for (int k = 0; k < 3; ++k) point[k] = coordinate(text, kAxes[k]);
+    claim.points.push_back(point);
+    // to_chars knows no locale, unlike printf.
+    for (int k = 0; k < 3; ++k) {
+      claim.plain.append(line, std::to_chars(line, line + sizeof line, point[k]).ptr);
+      claim.plain += k < 2 ? ' ' : '\n';
+    }
+    while (text.more_on_line()) text.number("a normal, colour or texture coordinate");
+    text.next_line();
+  }
+}
+
+void off_faces(TextCursor& text, FormatClaim& claim) {
   for (std::uint64_t f = 0; f < claim.faces; ++f) {
     if (!text.next_filled_line())
       text.fail("the file ends after " + std::to_string(f) + " faces; " + std::to_string(claim.faces) +
                 " were expected");
     const std::int64_t corners = text.integer("the number of corners", 3, static_cast<std::int64_t>(kMaxCorners));
-    for (std::int64_t i = 0; i < corners; ++i)
-      text.integer("a vertex index", 0, static_cast<std::int64_t>(claim.vertices) - 1);
+    claim.plain += std::to_string(corners);
+    for (std::int64_t i = 0; i < corners; ++i) {
+      claim.plain +=
+          ' ' + std::to_string(text.integer("a vertex index", 0, static_cast<std::int64_t>(claim.vertices) - 1));
+    }
+    claim.plain += '\n';
     while (text.more_on_line()) text.number("a colour");
     text.next_line();
   }
@@ -144,14 +181,8 @@ FormatClaim check_off(const std::string& content, const std::string& path) {
               " faces, but " + std::to_string(body) + " bytes follow; a larger file was expected");
   }
   text.next_line();
-  for (std::uint64_t v = 0; v < claim.vertices; ++v) {
-    if (!text.next_filled_line())
-      text.fail("the file ends after " + std::to_string(v) + " vertices; " + std::to_string(claim.vertices) +
-                " were expected");
-    for (const char* what : {"x of a vertex", "y of a vertex", "z of a vertex"}) text.number(what);
-    while (text.more_on_line()) text.number("a normal, colour or texture coordinate");
-    text.next_line();
-  }
+  claim.plain = "OFF\n" + std::to_string(claim.vertices) + ' ' + std::to_string(claim.faces) + " 0\n";
+  off_vertices(text, claim);
   off_faces(text, claim);
   return claim;
 }

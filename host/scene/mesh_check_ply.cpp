@@ -3,6 +3,7 @@
 // file's size first, so that no claim allocates anything, then every value of every element.
 // Source of the format: Turk, "The PLY polygon file format", 1994.
 #include <array>
+#include <cfloat>
 #include <cmath>
 #include <cstring>
 
@@ -127,23 +128,25 @@ class PlyBody {
 
   std::uint64_t bytes_left() const { return static_cast<std::uint64_t>(end_ - p_); }
 
-  void begin_item(const std::string& what) {
-    item_ = what;
+  void begin_item(const std::string& element, std::uint64_t number) {
+    element_ = &element;
+    number_ = number;
     if (encoding_ == Encoding::text && !text_.next_filled_line())
-      text_.fail("the file ends where " + what + " was expected");
+      text_.fail("the file ends where " + item() + " was expected");
   }
   void end_item() {
     if (encoding_ != Encoding::text) return;
-    if (text_.more_on_line())
-      text_.fail(quote_word(text_.word()) + " follows a complete " + item_ + "; the end of the line was expected");
+    if (text_.more_on_line()) {
+      text_.fail(quote_word(text_.word()) + " follows a complete " + *element_ + "; the end of the line was expected");
+    }
     text_.next_line();
   }
 
   double value(const ScalarType& type) {
-    if (encoding_ == Encoding::text) return text_.number("a property value");
+    if (encoding_ == Encoding::text) return text_value(type);
     if (bytes_left() < type.bytes)
       fail_input(path_, 0,
-                 "the file ends inside " + item_ + "; " + std::to_string(type.bytes) + " more bytes were expected");
+                 "the file ends inside " + item() + "; " + std::to_string(type.bytes) + " more bytes were expected");
     std::uint64_t bits = 0;
     for (unsigned i = 0; i < type.bytes; ++i) {
       const unsigned at = encoding_ == Encoding::big ? i : type.bytes - 1 - i;
@@ -155,10 +158,24 @@ class PlyBody {
 
   [[noreturn]] void fail(const std::string& message) const {
     if (encoding_ == Encoding::text) text_.fail(message);
-    fail_input(path_, 0, item_ + ": " + message);
+    fail_input(path_, 0, item() + ": " + message);
   }
 
  private:
+  std::string item() const { return *element_ + " " + std::to_string(number_); }
+
+  // Within its type, or else OpenMesh's stream would stop there and leave the rest unread.
+  double text_value(const ScalarType& type) {
+    if (type.kind == 'f') {
+      const double value = text_.number("a property value");
+      if (std::fabs(value) > static_cast<double>(FLT_MAX)) text_.fail("a value beyond 3.4e38; less was expected");
+      return value;
+    }
+    const int bits = static_cast<int>(8 * type.bytes) - (type.kind == 's' ? 1 : 0);
+    const std::int64_t high = (std::int64_t{1} << bits) - 1;
+    return static_cast<double>(text_.integer("a property value", type.kind == 's' ? -high - 1 : 0, high));
+  }
+
   static double decoded(std::uint64_t bits, const ScalarType& type) {
     if (type.kind == 'u') return static_cast<double>(bits);
     if (type.kind == 's') {
@@ -181,8 +198,13 @@ class PlyBody {
   const char* end_;
   Encoding encoding_;
   const std::string& path_;
-  std::string item_;
+  const std::string* element_ = nullptr;
+  std::uint64_t number_ = 0;
 };
+
+bool is_coordinate(const PlyProperty& property) {
+  return !property.count_type && (property.name == "x" || property.name == "y" || property.name == "z");
+}
 
 bool is_corner_list(const PlyElement& element, const PlyProperty& property) {
   return element.name == "face" && property.count_type &&
@@ -222,7 +244,7 @@ void check_layout(const PlyHeader& header, FormatClaim& claim, const std::string
       ++faces;
     }
     for (const PlyProperty& p : element.properties) {
-      if (element.name == "vertex" && !p.count_type && (p.name == "x" || p.name == "y" || p.name == "z")) ++coordinates;
+      if (element.name == "vertex" && is_coordinate(p)) ++coordinates;
       if (is_corner_list(element, p)) {
         ++corner_lists;
         if (p.type->kind == 'f') fail_input(path, 0, "vertex_indices in a floating type; an integer type was expected");
@@ -235,20 +257,49 @@ void check_layout(const PlyHeader& header, FormatClaim& claim, const std::string
   }
 }
 
-void check_list(PlyBody& body, const PlyElement& element, const PlyProperty& property, std::uint64_t vertices) {
+void append_little(std::string& bytes, std::uint32_t value) {
+  for (int shift = 0; shift < 32; shift += 8) bytes += static_cast<char>(value >> shift & 0xff);
+}
+
+void read_list(PlyBody& body, const PlyProperty& property, bool corners, std::uint64_t vertices, std::string& plain) {
   const double count = body.value(*property.count_type);
-  const bool corners = is_corner_list(element, property);
-  if (!(count >= (corners ? 3.0 : 0.0)) || count != std::floor(count) || count > static_cast<double>(kMaxCorners)) {
+  if (!(count >= (corners ? 3.0 : 0.0))) {
     body.fail("a list of " + std::to_string(static_cast<long long>(count)) + " entries; " +
               (corners ? "at least three corners" : "none or more") + " were expected");
   }
+  if (corners) append_little(plain, static_cast<std::uint32_t>(count));
   for (double i = 0; i < count; ++i) {
     const double index = body.value(*property.type);
-    if (corners && !(index >= 0.0 && index < static_cast<double>(vertices) && index == std::floor(index))) {
-      body.fail("a vertex index of " + std::to_string(index) + "; an integer from 0 to " + std::to_string(vertices) +
-                " less one was expected");
+    if (!corners) continue;
+    if (!(index >= 0.0 && index < static_cast<double>(vertices))) {
+      body.fail("vertex index " + std::to_string(static_cast<long long>(index)) + "; an integer from 0 to " +
+                std::to_string(vertices) + " less one was expected");
     }
+    append_little(plain, static_cast<std::uint32_t>(index));
   }
+}
+
+void read_vertex(PlyBody& body, const PlyElement& element, FormatClaim& claim) {
+  Vec3 point(0.0);
+  for (const PlyProperty& property : element.properties) {
+    if (property.count_type) {
+      read_list(body, property, false, 0, claim.plain);
+      continue;
+    }
+    const double value = body.value(*property.type);
+    if (!is_coordinate(property)) continue;
+    if (!(std::fabs(value) <= static_cast<double>(FLT_MAX))) {
+      body.fail("a coordinate that is not finite or beyond 3.4e38; a finite number was expected");
+    }
+    point[property.name[0] - 'x'] = value;
+  }
+  claim.points.push_back(point);
+}
+
+std::string plain_header(const FormatClaim& claim) {
+  return "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(claim.vertices) +
+         "\nproperty float x\nproperty float y\nproperty float z\nelement face " + std::to_string(claim.faces) +
+         "\nproperty list int int vertex_indices\nend_header\n";
 }
 
 }  // namespace
@@ -257,28 +308,38 @@ FormatClaim check_ply(const std::string& content, const std::string& path) {
   TextCursor text(content, path);
   const PlyHeader header(text);
   FormatClaim claim;
-  claim.binary = header.encoding != Encoding::text;
-  claim.big_endian = header.encoding == Encoding::big;
   check_layout(header, claim, path);
   PlyBody body(text, content, header.encoding, path);
   check_size(header, body.bytes_left(), path);
+  std::string faces;
   for (const PlyElement& element : header.elements) {
     for (std::uint64_t i = 0; i < element.count; ++i) {
-      body.begin_item(element.name + " " + std::to_string(i + 1));
-      for (const PlyProperty& property : element.properties) {
-        if (property.count_type) {
-          check_list(body, element, property, claim.vertices);
-          continue;
+      body.begin_item(element.name, i + 1);
+      if (element.name == "vertex") {
+        read_vertex(body, element, claim);
+      } else {
+        for (const PlyProperty& property : element.properties) {
+          if (property.count_type) {
+            read_list(body, property, is_corner_list(element, property), claim.vertices, faces);
+          } else {
+            body.value(*property.type);
+          }
         }
-        const bool coordinate =
-            element.name == "vertex" && (property.name == "x" || property.name == "y" || property.name == "z");
-        const double value = body.value(*property.type);
-        if (coordinate && !std::isfinite(value))
-          body.fail("a coordinate that is not finite; finite numbers were expected");
       }
       body.end_item();
     }
   }
+  claim.binary = true;
+  claim.plain = plain_header(claim);
+  for (const Vec3& point : claim.points) {
+    for (int k = 0; k < 3; ++k) {
+      const auto value = static_cast<float>(point[k]);
+      std::uint32_t bits = 0;
+      std::memcpy(&bits, &value, sizeof bits);
+      append_little(claim.plain, bits);
+    }
+  }
+  claim.plain += faces;
   return claim;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "scene/mesh_soup.hpp"
 
@@ -16,7 +17,10 @@ struct FormatClaim {
   std::uint64_t vertices = 0;  ///< 0 for STL, which has only faces
   std::uint64_t faces = 0;
   bool binary = false;
-  bool big_endian = false;
+  std::vector<Vec3> points;  ///< PLY and OFF: the vertices in double, where OpenMesh reads float
+  /// PLY and OFF: the same mesh written plainly, which is what OpenMesh gets to read: its readers lose their place
+  /// at comments, colours, properties before the corners, and numbers of another type than they want.
+  std::string plain;
 };
 
 /// Walks over the content and throws Error(input) at the first thing that OpenMesh would accept silently: counts
