@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// The stiff and extreme cases: each says what must hold, measures it, and says where its tolerance comes from.
+// clray-bench stability prints them all; the tests run those marked `quick`.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "support/closed_forms.hpp"
+
+namespace clray_test {
+
+struct Outcome {
+  bool pass = false;
+  std::string measured;
+};
+
+struct Case {
+  std::string area;  ///< "bitwise", "geometry", "surfaces", "bins", "coverage"
+  std::string name;
+  std::string must_hold;
+  std::string tolerance;  ///< and where it comes from
+  bool quick = true;
+  std::function<Outcome()> run;
+};
+
+/// All cases, in the order in which they are reported.
+std::vector<Case> stability_cases();
+
+std::vector<Case> bitwise_cases();
+std::vector<Case> geometry_cases();
+std::vector<Case> surface_cases();
+std::vector<Case> bin_cases();
+std::vector<Case> coverage_cases();
+
+/// A sum of equal weights: each is rounded alike, by up to half of 2^-37 of the largest weight (DESIGN, Kernels).
+constexpr double kQuantumOfTotal = 1e-11;
+
+/// "value (off by x)" and whether |found − exact| ≤ 4·error + slack·|exact|.
+Outcome near(double found, double error, double exact, double slack);
+
+/// Passes if no failure was counted; else says which.
+bool sound(const clray::Result& result, std::string* why);
+
+}  // namespace clray_test

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Apache-2.0
+// Meshes and views that break careless tracers: leaks, slivers, far-off and huge bodies, grazing light.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "stability/case.hpp"
+
+namespace clray_test {
+
+using clray::Scene;
+using clray::Vec3;
+
+namespace {
+
+/// A result that must be exactly zero.
+Outcome nothing(const clray::Result& result) {
+  Outcome outcome;
+  const double a = result.delay.at(0).intensity_m2_per_sr.value;
+  outcome.measured = fmt::format("A = {:g} from {} rays", a, result.rays);
+  outcome.pass = a == 0.0 && sound(result, &outcome.measured);
+  return outcome;
+}
+
+Outcome total_is(const clray::Result& result, double exact, double slack) {
+  const clray::Estimate& a = result.delay.at(0).intensity_m2_per_sr;
+  Outcome outcome = near(a.value, a.standard_error, exact, slack);
+  outcome.pass = sound(result, &outcome.measured) && outcome.pass;
+  return outcome;
+}
+
+const Vec3 kFarOff{148376, 1234, -223423};
+
+/// A black closed sphere around a white one: light that returns has leaked through shared edges.
+Outcome leak(int slices, int log2_rays) {
+  Scene scene = scene_of(moved(sphere_mesh(slices, slices / 2, 1.0), kFarOff), lambert(0.0));
+  add(scene, moved(sphere_mesh(32, 16, 0.9), kFarOff), lambert(1.0));
+  monostatic(scene, toward(0.7, 0.4));
+  return nothing(run(rays(scene, log2_rays)));
+}
+
+/// Light falls into a sphere through a hole on top; from below nothing of it may be seen through the shell.
+Outcome leak_inside(int slices, int log2_rays) {
+  Scene scene = scene_of(moved(bowl_mesh(slices, slices / 2, 1.0, radians(50.0), kPi), kFarOff), lambert(0.9));
+  bistatic(scene, {0, 0, 1}, {0, 0, -1});
+  scene.trace.max_bounces = 8;
+  return nothing(run(rays(scene, log2_rays)));
+}
+
+/// A unit square of strips whose widths halve: the last is 10⁻¹² wide. Every ray must be counted once.
+Outcome slivers() {
+  auto mesh = std::make_shared<clray::Mesh>();
+  mesh->material_slots = {""};
+  constexpr int kStrips = 40;
+  for (int i = 0; i <= kStrips + 1; ++i) {
+    const double x = i > kStrips ? 1.0 : 1.0 - std::ldexp(1.0, -i);
+    mesh->vertices.push_back({x, 0.0, 0.0});
+    mesh->vertices.push_back({x, 1.0, 0.0});
+  }
+  for (std::uint32_t i = 0; i <= kStrips; ++i) {
+    mesh->triangles.push_back({2 * i, 2 * i + 2, 2 * i + 1});
+    mesh->triangles.push_back({2 * i + 1, 2 * i + 2, 2 * i + 3});
+  }
+  mesh->triangle_slot.assign(mesh->triangles.size(), 0);
+  Scene scene = scene_of(mesh, lambert(1.0));
+  monostatic(scene, toward(0.6, 0.3));
+  const double mu = std::cos(0.6);
+  // The outline of the tilted square does not fill the beam: stratified error applies.
+  return total_is(run(rays(scene, 20)), mu * mu / kPi, 1e-10);
+}
+
+/// A square of many triangles, seen face-on: every ray hits, exactly once.
+Outcome tiling(int cells) {
+  auto mesh = std::make_shared<clray::Mesh>();
+  mesh->material_slots = {""};
+  const auto n = static_cast<std::uint32_t>(cells) + 1;
+  for (std::uint32_t i = 0; i < n; ++i)
+    for (std::uint32_t j = 0; j < n; ++j) mesh->vertices.push_back({1.0 * i / cells, 1.0 * j / cells, 0.0});
+  for (std::uint32_t i = 0; i + 1 < n; ++i)
+    for (std::uint32_t j = 0; j + 1 < n; ++j) {
+      const std::uint32_t a = i * n + j;
+      mesh->triangles.push_back({a, a + n, a + n + 1});
+      mesh->triangles.push_back({a, a + n + 1, a + 1});
+    }
+  mesh->triangle_slot.assign(mesh->triangles.size(), 0);
+  Scene scene = scene_of(mesh, lambert(1.0));
+  return total_is(run(rays(scene, 20)), 1.0 / kPi, kQuantumOfTotal);
+}
+
+Outcome coordinates() {
+  Outcome outcome{true, ""};
+  for (double scale : {1e8, 1e-8}) {
+    const MeshPtr mesh = moved(prism_mesh(64, 1.0, 3.0), {0, 0, 0}, scale);
+    const Vec3 s = toward(0.7, 0.4);
+    Scene scene = scene_of(mesh, lambert(0.5));
+    monostatic(scene, s);
+    const Outcome one = total_is(run(rays(scene, 18)), convex_lambert(*mesh, 0.5, s, s).total_m2_per_sr, 1e-10);
+    outcome.pass = outcome.pass && one.pass;
+    outcome.measured += fmt::format("{}{:g} m: {}", outcome.measured.empty() ? "" : "; ", scale, one.measured);
+  }
+  return outcome;
+}
+
+Outcome far_off() {
+  const MeshPtr mesh = moved(prism_mesh(64, 1.0, 3.0), {1e8, -3e7, 2e7});
+  const Vec3 s = toward(0.7, 0.4);
+  Scene scene = scene_of(mesh, lambert(0.5));
+  monostatic(scene, s);
+  // Coordinates themselves are rounded to 1.5e-8 m at 1e8 m: normals and areas are off by a few of these.
+  return total_is(run(rays(scene, 18)), convex_lambert(*mesh, 0.5, s, s).total_m2_per_sr, 1e-6);
+}
+
+Outcome close_plates() {
+  Scene scene = scene_of(moved(plate_mesh(1, 1), {0, 0, 10.0}), lambert(0.0));
+  add(scene, moved(plate_mesh(1, 1), {0, 0, 10.0 - 1e-6}), lambert(1.0));
+  return nothing(run(rays(scene, 20)));
+}
+
+Outcome grazing() {
+  Outcome outcome{true, ""};
+  for (double degrees : {89.9, 89.999, 89.99999}) {
+    Scene scene = scene_of(plate_mesh(2.0, 1.0), lambert(0.5));
+    const Vec3 s = toward(radians(degrees));
+    monostatic(scene, s);
+    // s.z is what the tracer is given: its square is exact to rounding, cos² of the angle is not.
+    const Outcome one = total_is(run(rays(scene, 16)), 0.5 / kPi * 2.0 * s.z * s.z, 1e-8);
+    outcome.pass = outcome.pass && one.pass;
+    outcome.measured += fmt::format("{}{}°: {}", outcome.measured.empty() ? "" : "; ", degrees, one.measured);
+  }
+  return outcome;
+}
+
+Outcome edge_on() {
+  Scene scene = scene_of(plate_mesh(2.0, 1.0), lambert(1.0));
+  monostatic(scene, {1, 0, 0});
+  return nothing(run(rays(scene, 16)));
+}
+
+Outcome coincident(int copies) {
+  auto mesh = std::make_shared<clray::Mesh>(*plate_mesh(1, 1));
+  const auto two = mesh->triangles;
+  for (int i = 1; i < copies; ++i) mesh->triangles.insert(mesh->triangles.end(), two.begin(), two.end());
+  mesh->triangle_slot.assign(mesh->triangles.size(), 0);
+  Scene scene = scene_of(mesh, lambert(1.0));
+  monostatic(scene, {0, 0, 1});
+  rays(scene, 8);
+  const clray::Result result = run(scene);
+  Outcome outcome = total_is(result, 1.0 / kPi, kQuantumOfTotal);
+  outcome.measured += fmt::format("; BVH {:.2f} s", result.seconds.bvh);
+  outcome.pass = outcome.pass && result.seconds.bvh < 60.0;
+  return outcome;
+}
+
+Outcome giant() {
+  const MeshPtr small = moved(sphere_mesh(64, 32, 1.0), {0, 0, 2});
+  Scene scene = scene_of(merged({small, moved(plate_mesh(1, 1), {0, 0, 0}, 1e4)}), lambert(0.5));
+  monostatic(scene, {0, 0, 1});
+  // The ball shades the plate by its outline, a polygon of 64 sides.
+  const Vec3 up{0, 0, 1};
+  const double ball = convex_lambert(*small, 0.5, up, up).total_m2_per_sr;
+  const double outline = 32.0 * std::sin(2.0 * kPi / 64.0);
+  const clray::Result result = run(rays(scene, 20));
+  return total_is(result, ball + 0.5 / kPi * (1e8 - outline), 1e-10);
+}
+
+Outcome many(int slices) {
+  const MeshPtr mesh = sphere_mesh(slices, slices / 2, 1.0);
+  Scene scene = scene_of(mesh, lambert(0.5));
+  const Vec3 s = toward(0.7, 0.4);
+  monostatic(scene, s);
+  const clray::Result result = run(rays(scene, 20));
+  Outcome outcome = total_is(result, convex_lambert(*mesh, 0.5, s, s).total_m2_per_sr, 1e-10);
+  outcome.measured += fmt::format("; {} triangles, BVH {:.1f} s", mesh->triangles.size(), result.seconds.bvh);
+  return outcome;
+}
+
+}  // namespace
+
+std::vector<Case> geometry_cases() {
+  const char* const kZero = "exact: zero";
+  const char* const kRounding = "4 standard errors + 1e-10: fp64 rounding and the integer unit";
+  const char* const kUnit = "2^-37: every weight is the same and may be rounded by half a unit of the sums";
+  const auto with = [](auto function, auto... arguments) { return [=] { return function(arguments...); }; };
+  return {
+      {"geometry", "closed sphere of 10⁶ triangles far off the origin, 2^23 rays", "none gets in", kZero, false,
+       with(leak, 1024, 23)},
+      {"geometry", "closed sphere of 3·10⁴ triangles far off, 2^20 rays", "none gets in", kZero, true,
+       with(leak, 180, 20)},
+      {"geometry", "rays from inside a sphere with a hole, 10⁶ triangles, 8 bounces", "none gets out through the shell",
+       kZero, false, with(leak_inside, 1024, 20)},
+      {"geometry", "rays from inside a sphere with a hole, 10⁴ triangles, 8 bounces", "none gets out through the shell",
+       kZero, true, with(leak_inside, 100, 18)},
+      {"geometry", "square of strips down to aspect 10¹²", "the square's total", kRounding, true, slivers},
+      {"geometry", "square of 2·64² triangles", "every ray counted once", kUnit, true, with(tiling, 64)},
+      {"geometry", "square of 2·1000² triangles", "every ray counted once", kUnit, false, with(tiling, 1000)},
+      {"geometry", "cylinder with coordinates × 10^±8", "the facets' sum", kRounding, true, coordinates},
+      {"geometry", "cylinder 10⁸ m off the origin", "the facets' sum",
+       "4 standard errors + 1e-6: ulp(1e8 m)/1 m, two hundred times", true, far_off},
+      {"geometry", "plates 1 µm apart at 10 m", "the rear one gets nothing", kZero, true, close_plates},
+      {"geometry", "grazing plates to 89.99999°", "rho/π·ab·cos²", "1e-8: ε over cos(89.99999°) = 1.3e-9", true,
+       grazing},
+      {"geometry", "edge-on plate", "nothing", kZero, true, edge_on},
+      {"geometry", "10⁶ coincident triangles", "one plate's total, BVH under 60 s", kUnit, false,
+       with(coincident, 500000)},
+      {"geometry", "10⁴ coincident triangles", "one plate's total", kUnit, true, with(coincident, 5000)},
+      {"geometry", "one triangle 10⁸ times the rest in area", "both totals, with the shade", kRounding, true, giant},
+      {"geometry", "sphere of 10⁷ triangles", "the facets' sum", kRounding, false, with(many, 3164)},
+  };
+}
+
+}  // namespace clray_test

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// The quick stiff and extreme cases as tests; clray-bench stability runs and tabulates all of them.
+#include <doctest/doctest.h>
+
+#include "stability/case.hpp"
+
+namespace {
+
+void run_area(const char* area) {
+  for (const clray_test::Case& c : clray_test::stability_cases()) {
+    if (c.area != area || !c.quick) continue;
+    const clray_test::Outcome outcome = c.run();
+    INFO(c.name, ": must hold: ", c.must_hold, "; measured: ", outcome.measured, "; tolerance: ", c.tolerance);
+    CHECK(outcome.pass);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("stability: bitwise") {
+  run_area("bitwise");
+}
+TEST_CASE("stability: geometry") {
+  run_area("geometry");
+}
+TEST_CASE("stability: surfaces") {
+  run_area("surfaces");
+}
+TEST_CASE("stability: bins") {
+  run_area("bins");
+}
