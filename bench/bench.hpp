@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the benchmarks of clray-bench share: options, Markdown tables, CSV files and gnuplot.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace clray_bench {
+
+struct Options {
+  std::string out;     ///< folder for tables and pictures
+  bool quick = false;  ///< --short: a few minutes less, for scripts
+  int seeds = 20;
+  int min_log2_rays = 8, max_log2_rays = 24;
+  std::vector<std::string> only;  ///< names that a case must contain one of; empty: all
+};
+
+int error(const Options& options);       ///< error against run time (docs/error.md)
+int stability(const Options& options);   ///< stiff and extreme cases (docs/stability.md)
+int specialise(const Options& options);  ///< generic against specialised programs
+int sweep(const Options& options);       ///< cost of orientations
+
+/// Whether `name` is asked for.
+bool wanted(const Options& options, const std::string& name);
+
+/// Rows of equal length, the first the heading, as a Markdown table.
+std::string markdown(const std::vector<std::vector<std::string>>& rows);
+
+/// Writes text to `folder`/`name`, by way of a temporary file. Throws std::runtime_error.
+void write_text(const std::string& folder, const std::string& name, const std::string& text);
+
+/// Runs gnuplot on a script; false (with a line on stderr) if there is none or it fails.
+bool gnuplot(const std::string& script);
+
+/// "device, driver" of what the benchmarks ran on.
+std::string device_line();
+
+double median(std::vector<double> values);
+/// The value below which `share` of the values lie (nearest rank).
+double quantile(std::vector<double> values, double share);
+
+}  // namespace clray_bench

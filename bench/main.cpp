@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// clray-bench error|stability|specialise|sweep: measures clray through its public interface. The device is the one
+// that CLRAY_TEST_DEVICE names, else the CPU.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+
+#include "bench.hpp"
+
+int main(int argc, char** argv) {
+  clray_bench::Options options;
+  options.out = CLRAY_SOURCE_DIR "/docs";
+  CLI::App app{"Measures clray: error against run time, stability, specialisation, orientation sweeps"};
+  app.require_subcommand(1);
+  int (*chosen)(const clray_bench::Options&) = nullptr;
+  const auto add = [&](const char* name, const char* what, int (*run)(const clray_bench::Options&)) {
+    CLI::App* sub = app.add_subcommand(name, what);
+    sub->add_option("--out", options.out, "folder for tables and pictures")->capture_default_str();
+    sub->add_option("--only", options.only, "cases whose name contains one of these");
+    sub->add_flag("--short", options.quick, "the quick cases and few rays only");
+    sub->callback([&chosen, run] { chosen = run; });
+    return sub;
+  };
+  CLI::App* error = add("error", "error against run time for cases with a closed form", clray_bench::error);
+  error->add_option("--seeds", options.seeds, "seeds per point")->capture_default_str()->check(CLI::Range(2, 1000));
+  error->add_option("--min-log2-rays", options.min_log2_rays)->capture_default_str()->check(CLI::Range(8, 32));
+  error->add_option("--max-log2-rays", options.max_log2_rays)->capture_default_str()->check(CLI::Range(8, 32));
+  add("stability", "the stiff and extreme cases", clray_bench::stability);
+  add("specialise", "generic against specialised programs", clray_bench::specialise);
+  add("sweep", "cost of orientations", clray_bench::sweep);
+  CLI11_PARSE(app, argc, argv);
+  try {
+    return chosen(options);
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "clray-bench: %s\n", e.what());
+    return 1;
+  }
+}
