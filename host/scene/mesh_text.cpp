@@ -108,6 +108,7 @@ bool TextCursor::more_on_line() {
 
 void TextCursor::next_line() {
   while (p_ != end_ && *p_ != '\n' && *p_ != '\r') ++p_;
+  if (p_ == end_) return;
   p_ += line_end_length(p_);
   ++line_;
 }
