@@ -56,6 +56,10 @@ std::string row_text(const TableRow& row, const std::map<std::string, double>& p
   const std::vector<double> values = row_values(row, parameters);
   std::string text;
   for (std::size_t i = 0; i < values.size(); ++i) {
+    if (parameters.count(row.keys[i].name) == 0 && spectra.count(row.keys[i].default_key) > 0) {
+      text += fmt::format(", {} = {}", row.keys[i].name, row.keys[i].default_key);
+      continue;
+    }
     const auto spectrum = spectra.find(row.keys[i].name);
     if (spectrum == spectra.end() && std::isnan(values[i])) continue;
     const std::string value = spectrum != spectra.end()
@@ -227,20 +231,18 @@ std::string list_table(const std::string& kind) {
     throw Error(ErrorCode::usage, "expected devices, brdf, shape or detector, found '" + kind + "'", "--list");
   }
   std::string text;
-  Columns lines;
   for (const TableRow& row : table(kind)) {
-    std::string keys;
+    Columns lines;
     for (const TableKey& key : row.keys) {
       const std::string value = !key.default_key.empty()        ? key.default_key
                                 : std::isnan(key.default_value) ? "none"
                                 : key.is_switch                 ? (key.default_value != 0.0 ? "true" : "false")
                                                                 : fmt::format("{:.6g}", key.default_value);
-      const std::string range = key.is_switch ? "true or false" : key.range;
-      keys += fmt::format("{}{} = {} {} {}", keys.empty() ? "" : "; ", key.name, value, range, key.meaning);
+      lines.add({key.name, value, key.is_switch ? "true or false" : key.range, key.meaning});
     }
-    lines.add({row.name, row.meaning + (keys.empty() ? "" : ": " + keys)});
+    text += row.name + ": " + row.meaning + "\n" + lines.text("    ");
   }
-  return lines.text("");
+  return text;
 }
 
 }  // namespace clray

@@ -212,7 +212,7 @@ void check_scene(const Scene& scene);
 /// What clray understood of a scene, for a person: components, materials, extents, light, detectors.
 std::string describe_scene(const Scene& scene);
 
-/// One line per row of a table: name, keys with default and range, meaning. kind: "brdf", "shape", "detector".
+/// The rows of a table, each with a line per key: name, default, range, meaning. kind: "brdf", "shape", "detector".
 /// Throws Error(usage) for another kind.
 std::string list_table(const std::string& kind);
 
