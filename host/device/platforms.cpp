@@ -12,6 +12,7 @@
 #include <functional>
 #include <mutex>
 
+#include "device/binary_cache.hpp"
 #include "device/self_test.hpp"
 
 namespace clray {
@@ -20,13 +21,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr cl_device_type kCpuAndGpu = CL_DEVICE_TYPE_CPU | CL_DEVICE_TYPE_GPU;
-
-fs::path pocl_cache_folder() {
-  if (const char* folder = getenv("POCL_CACHE_DIR")) return folder;
-  if (const char* folder = getenv("XDG_CACHE_HOME")) return fs::path(folder) / "pocl" / "kcache";
-  if (const char* folder = getenv("HOME")) return fs::path(folder) / ".cache" / "pocl" / "kcache";
-  return "/tmp/pocl/kcache";
-}
 
 bool can_write_in(const fs::path& folder) {
   std::error_code error;
@@ -52,7 +46,7 @@ void remove_private_cache() {
 
 void prepare_environment_once() {
   setenv("POCL_SIGFPE_HANDLER", "0", 1);
-  if (can_write_in(pocl_cache_folder())) return;
+  if (can_write_in(kernel_cache_folder())) return;
   std::error_code error;
   std::string name = (fs::temp_directory_path(error) / "clray-kernels-XXXXXX").string();
   if (error || !mkdtemp(name.data())) return;  // PoCL alone needs the folder, and will say that a build failed
@@ -257,6 +251,7 @@ OpenedDevice open_device(const FoundDevice& found) {
         opened.defines[quirk.define] = "1";
       }
     }
+    opened.keeps_binaries = opened.defines.erase("CLRAY_HOST_KEEPS_BINARIES") > 0;
     if (!found.info.int64_atomics) opened.defines["CLRAY_NO_INT64_ATOMICS"] = "1";
     opened.int64_atomics = opened.defines.count("CLRAY_NO_INT64_ATOMICS") == 0;
     return opened;

@@ -8,6 +8,7 @@
 
 #include <cmath>
 
+#include "device/binary_cache.hpp"
 #include "device/buffers.hpp"
 #include "shared/elementary.h"
 #include "shared/philox.h"
@@ -17,12 +18,22 @@ namespace {
 
 constexpr std::size_t kItems = 192;  // three groups of 64
 constexpr std::size_t kGroup = 64;
-constexpr std::size_t kResults = 9;
+constexpr std::size_t kResults = 13;
 constexpr std::size_t kSums = 3;
 
-const char* const kNames[kResults] = {
-    "a*b+c without fusing", "fma",    "division", "square root", "subnormal product", "subnormal sum",
-    "rounding to integers", "Philox", "Philox"};
+const char* const kNames[kResults] = {"a*b+c without fusing",
+                                      "fma",
+                                      "division",
+                                      "square root",
+                                      "subnormal product",
+                                      "subnormal sum",
+                                      "rounding to integers",
+                                      "Philox",
+                                      "Philox",
+                                      "exponential function",
+                                      "logarithm",
+                                      "sine",
+                                      "cosine"};
 
 /// Numbers in ±[2^-8, 2^8) with all their bits in use, and a few chosen ones first.
 std::vector<f64> inputs() {
@@ -60,6 +71,12 @@ std::vector<u64> expected_results(const std::vector<f64>& in) {
     expected.push_back(static_cast<u64>(whole));
     expected.push_back((static_cast<u64>(r[1]) << 32) | r[0]);
     expected.push_back((static_cast<u64>(r[3]) << 32) | r[2]);
+    expected.push_back(CLRAY_AS_U64(el_exp(a)));
+    expected.push_back(CLRAY_AS_U64(el_log(std::fabs(b))));
+    f64 sine, cosine;
+    el_sincos(c, &sine, &cosine);
+    expected.push_back(CLRAY_AS_U64(sine));
+    expected.push_back(CLRAY_AS_U64(cosine));
   }
   return expected;
 }
@@ -99,7 +116,9 @@ void run_self_test(OpenedDevice& opened, const KernelFiles& files) {
   const std::string entry = "device/self_test.cl";
   ProgramOptions options;
   options.defines["CLRAY_SELF_TEST_RESULTS"] = std::to_string(kResults) + "u";
-  const cl::Program program = build_source(opened, entry, program_source(opened, entry, options, files), false);
+  const std::string source = program_source(opened, entry, options, files);
+  bool from_binary = false;
+  const cl::Program program = build_source(opened, entry, source, false, true, &from_binary);
   cl::Kernel kernel = make_kernel(opened, program, "self_test");
   const cl::Buffer in_buffer = make_buffer(opened, in);
   const cl::Buffer out_buffer = make_zero_buffer<u64>(opened, kItems * kResults);
@@ -118,6 +137,7 @@ void run_self_test(OpenedDevice& opened, const KernelFiles& files) {
   for (std::size_t i = 0; i < kSums; ++i) {
     if (sums[i] != answers[i]) refuse(opened, "64-bit sum", static_cast<u64>(answers[i]), static_cast<u64>(sums[i]));
   }
+  if (opened.keeps_binaries && !from_binary) save_binary(opened, build_flags(false), source, program);
 }
 
 }  // namespace clray

@@ -30,6 +30,12 @@ __kernel void self_test(const __global f64 *in, __global u64 *out, volatile __gl
   philox4x32(0xa4093822u, id, counter, random);
   result[7] = ((u64)random[1] << 32) | random[0];
   result[8] = ((u64)random[3] << 32) | random[2];
+  result[9] = CLRAY_AS_U64(el_exp(a));
+  result[10] = CLRAY_AS_U64(el_log(fabs(b)));
+  f64 sine, cosine;
+  el_sincos(c, &sine, &cosine);
+  result[11] = CLRAY_AS_U64(sine);
+  result[12] = CLRAY_AS_U64(cosine);
   atomic_add_i64(sums, whole);
   atomic_add_i64(sums + 1, -1);
   atomic_add_i64(sums + 2, (i64)0x00000000ffffffff);

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// Built programs kept as files, beside the driver's own kernel cache. Only for drivers that a quirk marks
+// (CLRAY_HOST_KEEPS_BINARIES): PoCL starts its compiler even for a program it knows (70 ms and more on a warm start;
+// from a binary 1 ms to 15 ms). Making a binary costs PoCL a further compilation, so only what every run needs is kept.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "device/device_impl.hpp"
+
+namespace clray {
+
+/// The program kept for that device, build flags and source, built; nothing if there is none or it does not load.
+std::optional<cl::Program> load_binary(const OpenedDevice& opened, const std::string& flags, const std::string& source);
+
+/// Keeps a built program. Best called after its kernels have run (drivers compile at the first launch). A failure
+/// to write is no error: the next run builds again.
+void save_binary(const OpenedDevice& opened, const std::string& flags, const std::string& source,
+                 const cl::Program& program);
+
+/// Where PoCL keeps its kernels: POCL_CACHE_DIR, or PoCL's default.
+std::string kernel_cache_folder();
+
+}  // namespace clray
