@@ -26,6 +26,7 @@ struct TraceOptions {
   bool sobol = true;                   ///< false: plain random sampling
   bool specialise = true;              ///< false: the generic program (same digest, slower)
   bool force_bistatic = false;         ///< shadow rays even where the observer is at the source
+  bool allow_failures = false;         ///< report non-finite weights and overflows instead of throwing
   // For tests of identity; no result depends on them.
   std::uint32_t work_group_size = 64;
   std::uint64_t slice_points = 0;      ///< points per replicate and launch; 0: sized to slices of at most 0.3 s

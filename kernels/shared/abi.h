@@ -1,26 +1,144 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every struct that crosses between host and device. Only 32- and 64-bit scalars and arrays of them; padding is
-// explicit; sizes are asserted on both sides.
+// explicit; sizes are asserted on both sides. Lengths in m, directions are unit vectors away from the body,
+// body frame throughout.
 #ifndef CLRAY_ABI_H
 #define CLRAY_ABI_H
 
 #include "shared/portable.h"
 
 #define CLRAY_MATERIAL_PARAMETERS 12
+#define CLRAY_REFLECTANCE_NODES 129  // of a directional-reflectance table, uniform in mu from 0 to 1
 
 #define CLRAY_MATERIAL_TWO_SIDED 1u
+#define CLRAY_PRIMITIVE_PLANE 1u  // no ray leaving it can hit it again
 
 /// One material under one lane (variant and band). p: the row's keys in order, then derived numbers.
 typedef struct ClrayMaterial {
-  u32 model;            // row number in brdf.def
-  u32 flags;
-  u32 table;            // offset of the model's own table in `tables`
-  u32 reflectance;      // offset of the directional-reflectance table in `tables`
+  u32 model;        // row number in brdf.def
+  u32 flags;        // CLRAY_MATERIAL_*
+  u32 table;        // offset of the model's own table in `tables`
+  u32 reflectance;  // offset of the directional-reflectance table in `tables`
+  f64 emissivity;   // infrared, 0 unless thermal re-radiation is asked for
   f64 p[CLRAY_MATERIAL_PARAMETERS];
 } ClrayMaterial;
 
+/// One primitive, in the order of the BVH's leaves.
+typedef struct ClrayPrimitive {
+  u32 shape;      // row number in shape.def
+  u32 data;       // offset of its numbers in `shapes`
+  u32 material;   // column of the material table
+  u32 id;         // canonical rank: ties go to the smaller
+  u32 component;  // index into Scene::components
+  u32 flags;      // CLRAY_PRIMITIVE_*
+} ClrayPrimitive;
+
+// An analytic shape's numbers in `shapes`: rotation body -> local (9, by rows), origin (3), scale, then its keys.
+#define CLRAY_SHAPE_ORIGIN 9
+#define CLRAY_SHAPE_SCALE 12
+#define CLRAY_SHAPE_KEYS 13
+
+/// A node of the linear BVH: four children with fp32 boxes rounded outward, in the box frame
+/// (x − box_centre)·box_scale. child: (index << 4) | number of primitives (0: an inner node).
+typedef struct ClrayNode {
+  f32 bounds[6][4];  // low x, high x, low y, high y, low z, high z of the four children
+  u32 child[4];      // CLRAY_NO_CHILD where empty
+} ClrayNode;
+#define CLRAY_NO_CHILD 0xffffffffu
+
+/// A part that turns about a hinge, in one view: rigid motion body -> part.
+typedef struct ClrayInstance {
+  f64 rotation[9];     // by rows
+  f64 translation[3];  // x_part = rotation·x_body + translation
+  f64 box_centre[3];
+  f64 box_scale;
+  u32 root;
+  u32 moved;           // 0: the part stands in the body frame, nothing to carry
+} ClrayInstance;
+
+/// One orientation of a pass: where its rays start.
+typedef struct ClrayView {
+  f64 toward[3];          // unit vector from the body to where rays start: s for a beam, o for pixels
+  f64 corner[3];          // rays start at corner + u·edge_u + v·edge_v, u and v in (0,1)
+  f64 edge_u[3], edge_v[3];
+  f64 box_centre[3];      // box frame of the tree at `root`
+  f64 box_scale;
+  u32 root;               // of the top-level BVH (or of the only one)
+  u32 first_instance;
+} ClrayView;
+
+/// One direction to which hits are connected in one view: an observer for a beam, the source for pixels.
+typedef struct ClrayConnection {
+  f64 direction[3];
+  f64 acceptance_chord2;  // squared chord of the acceptance half angle; 0: no cone
+  f64 inv_solid_angle;    // 1/sr of the cone
+  u32 shadow;             // 0: what starts the ray is also where it connects (monostatic)
+  u32 padding;
+} ClrayConnection;
+
+/// A delay histogram of one connection.
+typedef struct ClrayDelay {
+  f64 first_m;         // path length (relative to the reference point) where the first bin starts
+  f64 inv_bin_per_m;   // bins per metre of path
+  u32 bins;
+  u32 padding;
+  u64 sums;            // index in `sums` of bin "below" of slot 0, replicate 0
+  u64 hits;            // index in `hits` of the largest weight of slot 0, replicate 0
+} ClrayDelay;
+
+/// What is constant over a pass.
+typedef struct ClrayPass {
+  f64 reference[3];      // reference point of delay and torque
+  f64 path_middle_m;     // moments of delay are of tau = (path - middle)·inv_path, in [-1,1] for one bounce
+  f64 inv_path_per_m;
+  f64 weight_scale;      // 2^S for weights toward a connection
+  f64 weight_limit;      // larger weights go to the second accumulator
+  f64 unit_scale;        // 2^S for shares of energy and momentum
+  f64 inv_lever_per_m;   // power of two that brings lever arms below 1
+  u32 key0, key1;        // the seed
+  u32 epoch;             // 0 search or plain, 1 confirmation
+  u32 replicates;
+  u32 views;
+  u32 width, height;     // pixels
+  u32 first_lane;        // material-table row of lane 0
+  u64 totals;            // index in `sums`
+  u64 pressure;
+  u64 books;
+  u64 pixels;
+} ClrayPass;
+
+// Energy books, one set per lane and replicate (see EnergyBooks in result.hpp).
+#define CLRAY_BOOK_INCIDENT 0
+#define CLRAY_BOOK_REFLECTED 1
+#define CLRAY_BOOK_ABSORBED 2
+#define CLRAY_BOOK_ROULETTE 3
+#define CLRAY_BOOK_TRUNCATED 4
+#define CLRAY_BOOK_UNCONNECTED 5
+#define CLRAY_BOOKS 6
+
+// Shares of energy and momentum are below this on a first bounce; larger ones go to the second accumulator.
+#define CLRAY_UNIT_LIMIT 4.0
+#define CLRAY_UNIT_BITS 36  // 62 - 24 - log2(CLRAY_UNIT_LIMIT)
+
+// Counters (64-bit), in this order.
+#define CLRAY_COUNT_NON_FINITE 0
+#define CLRAY_COUNT_STACK 1
+#define CLRAY_COUNT_LOST 2
+#define CLRAY_COUNT_OVERFLOW 3
+#define CLRAY_COUNT_STARTED 4
+#define CLRAY_COUNT_ESCAPED 5
+#define CLRAY_COUNT_KILLED 6
+#define CLRAY_COUNT_CAPPED 7
+#define CLRAY_COUNTERS 8
+
+// Sizes, asserted in C++ here and on the device by the start-up self-test.
+#define CLRAY_SIZES(X) \
+  X(ClrayMaterial, 120) X(ClrayPrimitive, 24) X(ClrayNode, 112) X(ClrayInstance, 136) X(ClrayView, 136) \
+  X(ClrayConnection, 48) X(ClrayDelay, 40) X(ClrayPass, 136)
 #ifdef __cplusplus
-static_assert(sizeof(ClrayMaterial) == 112, "abi");
+#define CLRAY_ASSERT_SIZE(type, size) static_assert(sizeof(type) == size, "abi.h: " #type);
+CLRAY_SIZES(CLRAY_ASSERT_SIZE)
+#undef CLRAY_ASSERT_SIZE
 #endif
 
 #endif

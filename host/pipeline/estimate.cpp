@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+// Statistics of replicates. Everything here decides when a run stops, so it uses + - * / sqrt and clray's own
+// elementary functions only: the same bits on every host.
+#include "pipeline/estimate.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "shared/elementary.h"
+
+namespace clray {
+namespace {
+
+/// P(|T| <= t) for integer degrees of freedom: the finite sums of Abramowitz & Stegun 26.7.3 and 26.7.4.
+double student_probability(double t, int freedom) {
+  const double n = freedom;
+  const double theta = el_atan2(t, std::sqrt(n));
+  const double c2 = n / (n + t * t);
+  const double s = t / std::sqrt(n + t * t), c = std::sqrt(c2);
+  double term = 1.0, sum = 0.0;
+  if (freedom % 2 == 0) {
+    for (int k = 0; k <= freedom - 2; k += 2) {
+      sum += term;
+      term *= c2 * (k + 1.0) / (k + 2.0);
+    }
+    return s * sum;
+  }
+  term = c;
+  for (int k = 1; k <= freedom - 2; k += 2) {
+    sum += term;
+    term *= c2 * (k + 1.0) / (k + 2.0);
+  }
+  return 2.0 * CLRAY_INV_PI * (theta + s * sum);
+}
+
+}  // namespace
+
+double student_t95(int freedom) {
+  double low = 0.0, high = 16.0;
+  for (int k = 0; k < 60; ++k) {
+    const double middle = 0.5 * (low + high);
+    (student_probability(middle, freedom) < 0.95 ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+Estimate estimate_mean(const std::vector<double>& replicates) {
+  const double count = static_cast<double>(replicates.size());
+  double sum = 0.0;
+  for (const double x : replicates) sum += x;
+  Estimate e;
+  e.value = sum / count;
+  double second = 0.0, fourth = 0.0;
+  for (const double x : replicates) {
+    const double square = (x - e.value) * (x - e.value);
+    second += square;
+    fourth += square * square;
+  }
+  e.standard_error = std::sqrt(second / (count * (count - 1.0)));
+  const double half = student_t95(static_cast<int>(replicates.size()) - 1) * e.standard_error;
+  e.low = e.value - half;
+  e.high = e.value + half;
+  e.relative_variance_of_variance =
+      second > 0.0 ? fourth / (second * second) - 1.0 / count : std::numeric_limits<double>::quiet_NaN();
+  return e;
+}
+
+Estimate estimate_jackknife(double pooled, const std::vector<double>& left_out) {
+  const double count = static_cast<double>(left_out.size());
+  double mean = 0.0;
+  for (const double x : left_out) mean += x / count;
+  double sum = 0.0;
+  for (const double x : left_out) sum += (x - mean) * (x - mean);
+  Estimate e;
+  e.value = pooled;
+  e.standard_error = std::sqrt(sum * (count - 1.0) / count);
+  const double half = student_t95(static_cast<int>(left_out.size()) - 1) * e.standard_error;
+  e.low = pooled - half;
+  e.high = pooled + half;
+  e.relative_variance_of_variance = std::numeric_limits<double>::quiet_NaN();
+  return e;
+}
+
+double poisson_upper95(std::uint64_t hits) {
+  if (hits == 0) return 3.0;
+  if (hits > 400) return static_cast<double>(hits) + 1.6449 * std::sqrt(static_cast<double>(hits)) + 2.0;  // normal
+  // Solves P(N <= hits; mean) = 0.05 by bisection.
+  double low = static_cast<double>(hits), high = low + 4.0 * std::sqrt(low) + 8.0;
+  for (int k = 0; k < 60; ++k) {
+    const double mean = 0.5 * (low + high);
+    double term = el_exp(-mean), sum = term;
+    for (std::uint64_t n = 1; n <= hits; ++n) sum += term *= mean / static_cast<double>(n);
+    (sum > 0.05 ? low : high) = mean;
+  }
+  return high;
+}
+
+std::uint64_t fnv1a(std::uint64_t state, const void* bytes, std::size_t count) {
+  const auto* p = static_cast<const unsigned char*>(bytes);
+  for (std::size_t k = 0; k < count; ++k) state = (state ^ p[k]) * 1099511628211ull;
+  return state;
+}
+
+}  // namespace clray

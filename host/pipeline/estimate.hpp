@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// From the values of independent replicates to estimates with errors (PHYSICS section 6).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "clray/result.hpp"
+
+namespace clray {
+
+/// Two-sided 95 % quantile of Student's t with `freedom` >= 1 degrees of freedom.
+double student_t95(int freedom);
+
+/// Mean, standard error, interval and relative variance of the variance of at least two replicates.
+Estimate estimate_mean(const std::vector<double>& replicates);
+
+/// A ratio-like statistic of pooled sums with its jackknife error: `pooled` over all replicates, `left_out[r]` over all
+/// but r.
+Estimate estimate_jackknife(double pooled, const std::vector<double>& left_out);
+
+/// Upper 95 % bound of a Poisson mean of which `hits` were seen: 3.0 for none (−ln 0.05), else by inversion.
+double poisson_upper95(std::uint64_t hits);
+
+/// 64-bit FNV-1a over bytes, continued from `state`.
+std::uint64_t fnv1a(std::uint64_t state, const void* bytes, std::size_t count);
+constexpr std::uint64_t kFnvStart = 14695981039346656037ull;
+
+}  // namespace clray

@@ -1,0 +1,419 @@
+// SPDX-License-Identifier: Apache-2.0
+// Integer sums of a pass to estimates in SI units (see outcome.hpp; PHYSICS sections 1, 4 and 6).
+#include "pipeline/outcome.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "pipeline/estimate.hpp"
+#include "scene/spectrum.hpp"
+#include "shared/elementary.h"
+
+namespace clray {
+namespace {
+
+constexpr double kLightSpeed = 299792458.0;
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// Reads the sums of a pass in the units of its results.
+class Reader {
+ public:
+  Reader(const PassPlan& plan, const Sums& sums)
+      : plan_(plan), sums_(sums), weight_(1.0 / plan.constants.weight_scale), unit_(1.0 / plan.constants.unit_scale) {}
+
+  std::uint64_t slot(std::size_t view, std::size_t lane, std::size_t c) const {
+    return (view * plan_.lanes.size() + lane) * plan_.connections + c;
+  }
+  std::uint64_t row(std::uint64_t slot, std::uint32_t r) const { return slot * plan_.replicates + r; }
+
+  /// m² of beam that one point of one replicate stands for.
+  double share(std::size_t view) const { return plan_.area_m2[view] / static_cast<double>(sums_.points); }
+
+  /// Moment k of replicate r (w, w·tau, w·tau²), in m²/sr.
+  double total(std::size_t view, std::size_t lane, std::size_t c, std::uint32_t r, int moment) const {
+    return at(3 * row(slot(view, lane, c), r) + moment) * weight_ * share(view);
+  }
+  /// Bin of a delay detector, 0 below, bins+1 above; m²/sr.
+  double bin(const DelayPlan& d, std::size_t view, std::uint64_t slot, std::uint32_t r, std::uint32_t b) const {
+    return at(d.sums + row(slot, r) * (d.bins + 2ull) + b) * weight_ * share(view);
+  }
+  std::uint64_t hits(const DelayPlan& d, std::uint64_t slot, std::uint32_t r, std::uint32_t b) const {
+    return sums_.hits[d.hits + row(slot, r) * (d.bins + 3ull) + 1 + b];
+  }
+  double largest_weight(const DelayPlan& d, std::uint64_t slot, std::uint32_t r) const {
+    const auto bits = static_cast<std::uint32_t>(sums_.hits[d.hits + row(slot, r) * (d.bins + 3ull)]);
+    float value;
+    std::memcpy(&value, &bits, sizeof value);
+    return value;
+  }
+  /// Momentum (0-2) or torque (3-5) of a component, m² or m³.
+  double push(std::size_t view, std::size_t lane, std::size_t component, std::uint32_t r, int k) const {
+    const std::uint64_t view_row = (view * plan_.lanes.size() + lane) * plan_.replicates + r;
+    const double value = at(plan_.constants.pressure + (view_row * plan_.components + component) * 6 + k);
+    return value * unit_ * share(view) * (k >= 3 ? plan_.lever_m : 1.0);
+  }
+  double book(std::size_t view, std::size_t lane, std::uint32_t r, int book) const {
+    const std::uint64_t view_row = (view * plan_.lanes.size() + lane) * plan_.replicates + r;
+    return at(plan_.constants.books + view_row * CLRAY_BOOKS + book) * unit_ * share(view);
+  }
+  /// Radiance over irradiance of a pixel in half r, 1/sr.
+  double pixel(std::size_t view, std::size_t lane, std::uint32_t r, std::uint64_t pixel) const {
+    const std::uint64_t pixels = static_cast<std::uint64_t>(plan_.width) * plan_.height;
+    const std::uint64_t view_row = (view * plan_.lanes.size() + lane) * plan_.replicates + r;
+    return at(plan_.constants.pixels + view_row * pixels + pixel) * weight_ / static_cast<double>(sums_.points);
+  }
+
+ private:
+  double at(std::uint64_t index) const { return static_cast<double>(sums_.values[index]); }
+
+  const PassPlan& plan_;
+  const Sums& sums_;
+  double weight_, unit_;
+};
+
+template <class Function>
+std::vector<double> per_replicate(const PassPlan& plan, Function&& function) {
+  std::vector<double> values(plan.replicates);
+  for (std::uint32_t r = 0; r < plan.replicates; ++r) values[r] = function(r);
+  return values;
+}
+
+/// Mean and width of delay: ratios of pooled sums, errors by jackknife.
+void delay_moments(const PassPlan& plan, const Reader& read, std::size_t v, std::size_t l, std::size_t c,
+                   DelayResult* out) {
+  double pooled[3] = {};
+  for (int k = 0; k < 3; ++k) {
+    for (std::uint32_t r = 0; r < plan.replicates; ++r) pooled[k] += read.total(v, l, c, r, k);
+  }
+  const double to_s = 1.0 / (plan.constants.inv_path_per_m * kLightSpeed);
+  const double middle_s = plan.constants.path_middle_m / kLightSpeed;
+  const auto mean_of = [&](const double* s) { return middle_s + s[1] / s[0] * to_s; };
+  const auto width_of = [&](const double* s) {
+    const double mean = s[1] / s[0];
+    return std::sqrt(std::max(0.0, s[2] / s[0] - mean * mean)) * to_s;
+  };
+  std::vector<double> means, widths;
+  for (std::uint32_t r = 0; r < plan.replicates; ++r) {
+    double rest[3];
+    for (int k = 0; k < 3; ++k) rest[k] = pooled[k] - read.total(v, l, c, r, k);
+    means.push_back(mean_of(rest));
+    widths.push_back(width_of(rest));
+  }
+  out->mean_delay_s = estimate_jackknife(mean_of(pooled), means);
+  out->rms_width_s = estimate_jackknife(width_of(pooled), widths);
+}
+
+void delay_bins(const PassPlan& plan, const Reader& read, const DelayPlan& delay, std::size_t v, std::uint64_t slot,
+                double points, DelayResult* out) {
+  const double count = plan.replicates;
+  double largest = 0.0;
+  for (std::uint32_t r = 0; r < plan.replicates; ++r) largest = std::max(largest, read.largest_weight(delay, slot, r));
+  const double share = plan.area_m2[v] / (points * count);
+  for (std::uint32_t b = 1; b <= delay.bins; ++b) {
+    double sum = 0.0, squares = 0.0;
+    std::uint64_t hits = 0;
+    std::uint32_t replicates_hit = 0;
+    for (std::uint32_t r = 0; r < plan.replicates; ++r) {
+      sum += read.bin(delay, v, slot, r, b);
+      const std::uint64_t h = read.hits(delay, slot, r, b);
+      hits += h;
+      replicates_hit += h != 0;
+    }
+    const double mean = sum / count;
+    for (std::uint32_t r = 0; r < plan.replicates; ++r) {
+      const double d = read.bin(delay, v, slot, r, b) - mean;
+      squares += d * d;
+    }
+    const bool resolved = hits >= 10 && 2 * replicates_hit >= plan.replicates;
+    out->bin_m2_per_sr.push_back(mean);
+    out->bin_standard_error.push_back(std::sqrt(squares / (count * (count - 1.0))));
+    out->hits.push_back(hits);
+    out->resolved.push_back(resolved);
+    out->bin_upper_bound.push_back(resolved ? 0.0 : largest * poisson_upper95(hits) * share);
+  }
+  for (std::uint32_t r = 0; r < plan.replicates; ++r) {
+    out->below_m2_per_sr += read.bin(delay, v, slot, r, 0) / count;
+    out->above_m2_per_sr += read.bin(delay, v, slot, r, delay.bins + 1) / count;
+  }
+}
+
+/// Apparent AB magnitude of an irradiance within a top hat: against 3631 Jy over the same frequencies.
+double magnitude_of(double W_m2, const Band& band) {
+  if (!(band.high_nm > band.low_nm) || !(W_m2 > 0.0)) return kNan;
+  const double hertz = kLightSpeed * 1e9 * (1.0 / band.low_nm - 1.0 / band.high_nm);
+  return -2.5 * el_log(W_m2 / (3631e-26 * hertz)) / el_log(10.0);
+}
+
+class Writer {
+ public:
+  Writer(const Scene& scene, const Geometry& geometry, const PassPlan& plan, const PassOutcome& outcome, Result* out)
+      : scene_(scene), geometry_(geometry), plan_(plan), outcome_(outcome), read_(plan, outcome.sums), out_(*out) {}
+
+  void write() {
+    first_orientation_ = plan_.grid ? out_.orientations.size() : 0;
+    if (plan_.grid) {
+      out_.orientations.insert(out_.orientations.end(), plan_.orientations.begin(), plan_.orientations.end());
+    } else if (out_.orientations.empty()) {
+      out_.orientations = plan_.orientations;
+    }
+    for (std::size_t v = 0; v < plan_.views.size(); ++v) {
+      if (plan_.pixels) pictures(v);
+      for (std::size_t l = 0; l < plan_.lanes.size() && !plan_.pixels; ++l) {
+        if (plan_.pressure) pressure(v, l);
+        for (std::size_t c = 0; c < plan_.connections && plan_.connect; ++c) {
+          delays(v, l, c);
+          spectrometer(v, l, c);
+        }
+      }
+    }
+    if (plan_.scatter && !plan_.pixels) energy();
+    counters();
+  }
+
+ private:
+  ResultKey key(int detector, std::size_t v, std::size_t l, std::size_t c) const {
+    ResultKey k;
+    k.detector = scene_.detectors[detector].name.empty() ? scene_.detectors[detector].kind
+                                                         : scene_.detectors[detector].name;
+    if (scene_.observers.size() > 1 && !plan_.grid) k.observer = scene_.observers[c].name;
+    k.variant = plan_.lanes[l].variant;
+    k.band = plan_.lanes[l].band_name;
+    k.orientation = first_orientation_ + v;
+    return k;
+  }
+
+  Estimate intensity(std::size_t v, std::size_t l, std::size_t c) const {
+    return estimate_mean(per_replicate(plan_, [&](std::uint32_t r) { return read_.total(v, l, c, r, 0); }));
+  }
+
+  void delays(std::size_t v, std::size_t l, std::size_t c) {
+    for (const DelayPlan& delay : plan_.delays) {
+      DelayResult d;
+      d.key = key(delay.detector, v, l, c);
+      d.intensity_m2_per_sr = intensity(v, l, c);
+      if (d.intensity_m2_per_sr.value > 0.0) {
+        delay_moments(plan_, read_, v, l, c, &d);
+      } else {
+        d.mean_delay_s.value = d.mean_delay_s.standard_error = kNan;
+        d.rms_width_s.value = d.rms_width_s.standard_error = kNan;
+      }
+      d.first_bin_start_s = delay.first_m[c] / kLightSpeed;
+      d.bin_width_s = delay.bin_m[c] / kLightSpeed;
+      delay_bins(plan_, read_, delay, v, read_.slot(v, l, c), static_cast<double>(outcome_.sums.points), &d);
+      if (d.intensity_m2_per_sr.value > 0.0) {
+        Diagnostics& g = out_.diagnostics;
+        g.below_window_fraction = std::max(g.below_window_fraction, d.below_m2_per_sr / d.intensity_m2_per_sr.value);
+        g.above_window_fraction = std::max(g.above_window_fraction, d.above_m2_per_sr / d.intensity_m2_per_sr.value);
+      }
+      out_.delay.push_back(std::move(d));
+    }
+  }
+
+  void spectrometer(std::size_t v, std::size_t l, std::size_t c) {
+    for (std::size_t d = 0; d < scene_.detectors.size(); ++d) {
+      if (scene_.detectors[d].kind != "spectrometer") continue;
+      SpectrometerResult s;
+      s.key = key(static_cast<int>(d), v, l, c);
+      s.band = plan_.lanes[l].band;
+      s.intensity_m2_per_sr = intensity(v, l, c);
+      s.source_W_m2 = source_band_W_m2(scene_.source, s.band);
+      s.magnitude_AB = s.magnitude_standard_error = kNan;
+      if (scene_.station) {
+        const double range = scene_.station->range_m;
+        const double factor = s.source_W_m2 / (range * range);
+        s.received_W_m2 = factor * s.intensity_m2_per_sr.value;
+        s.received_W_m2_standard_error = factor * s.intensity_m2_per_sr.standard_error;
+        s.magnitude_AB = magnitude_of(s.received_W_m2, s.band);
+        s.magnitude_standard_error = s.received_W_m2 > 0.0 ? 2.5 / el_log(10.0) * s.received_W_m2_standard_error /
+                                                                 s.received_W_m2
+                                                           : kNan;
+      }
+      const Orientation& o = plan_.orientations[v];
+      const vec3 a = v3(o.source.x, o.source.y, o.source.z);
+      const vec3 b = v3(o.observers[c].x, o.observers[c].y, o.observers[c].z);
+      s.phase_angle_rad = 2.0 * el_atan2(v3_length(v3_sub(a, b)), v3_length(v3_add(a, b)));
+      out_.spectrometer.push_back(std::move(s));
+    }
+  }
+
+  VectorEstimate vector_of(std::size_t v, std::size_t l, std::size_t first, std::size_t last, int k) const {
+    VectorEstimate out;
+    for (int axis = 0; axis < 3; ++axis) {
+      const Estimate e = estimate_mean(per_replicate(plan_, [&](std::uint32_t r) {
+        double sum = 0.0;
+        for (std::size_t part = first; part < last; ++part) sum += read_.push(v, l, part, r, k + axis);
+        return sum;
+      }));
+      out.value[axis] = e.value;
+      out.standard_error[axis] = e.standard_error;
+    }
+    return out;
+  }
+
+  void pressure(std::size_t v, std::size_t l) {
+    PressureResult p;
+    p.key = key(plan_.pressure_detector, v, l, 0);
+    p.key.observer.clear();
+    p.sun = plan_.orientations[v].source;
+    p.coefficient_m2 = vector_of(v, l, 0, plan_.components, 0);
+    p.torque_coefficient_m3 = vector_of(v, l, 0, plan_.components, 3);
+    for (std::size_t k = 0; k < plan_.components; ++k) {
+      p.component_m2.push_back(vector_of(v, l, k, k + 1, 0));
+      p.component_m3.push_back(vector_of(v, l, k, k + 1, 3));
+    }
+    p.absorbed_m2 = estimate_mean(
+        per_replicate(plan_, [&](std::uint32_t r) { return read_.book(v, l, r, CLRAY_BOOK_ABSORBED); }));
+    out_.pressure.push_back(std::move(p));
+  }
+
+  // Books of lane 0, averaged over the views.
+  void energy() {
+    Estimate* entries[CLRAY_BOOKS] = {&out_.energy.incident_m2,  &out_.energy.reflected_m2, &out_.energy.absorbed_m2,
+                                      &out_.energy.roulette_m2, &out_.energy.truncated_m2,
+                                      &out_.energy.unconnected_specular_m2};
+    for (int book = 0; book < CLRAY_BOOKS; ++book) {
+      *entries[book] = estimate_mean(per_replicate(plan_, [&](std::uint32_t r) {
+        double sum = 0.0;
+        for (std::size_t v = 0; v < plan_.views.size(); ++v) sum += read_.book(v, 0, r, book);
+        return sum / static_cast<double>(plan_.views.size());
+      }));
+    }
+    if (out_.energy.incident_m2.value > 0.0)
+      out_.diagnostics.truncated_energy_fraction = out_.energy.truncated_m2.value / out_.energy.incident_m2.value;
+  }
+
+  void pictures(std::size_t v) {
+    const std::uint64_t pixels = static_cast<std::uint64_t>(plan_.width) * plan_.height;
+    for (std::size_t l = 0; l < plan_.lanes.size(); ++l) {
+      ResultKey k = key(plan_.pixel_detector, v, l, static_cast<std::size_t>(plan_.pixel_observer));
+      k.band.clear();
+      ImageResult* image = nullptr;
+      for (ImageResult& known : out_.image) {
+        if (known.key.detector == k.detector && known.key.observer == k.observer && known.key.variant == k.variant &&
+            known.key.orientation == k.orientation)
+          image = &known;
+      }
+      if (image == nullptr) {
+        out_.image.emplace_back();
+        image = &out_.image.back();
+        image->key = k;
+        image->width = static_cast<int>(plan_.width);
+        image->height = static_cast<int>(plan_.height);
+        image->pixel_m = plan_.pixel_m;
+        image->right = plan_.right[v];
+        image->up = plan_.up[v];
+        const double* o = plan_.views[v].toward;
+        image->toward = Vec3(o[0], o[1], o[2]);
+        image->coverage.resize(pixels);
+        const double samples = static_cast<double>(outcome_.sums.points) * plan_.replicates;
+        for (std::uint64_t p = 0; p < pixels; ++p)
+          image->coverage[p] = static_cast<float>(static_cast<double>(outcome_.sums.hits[v * pixels + p]) / samples);
+      }
+      image->bands.push_back(plan_.lanes[l].band);
+      image->band_source_W_m2.push_back(source_band_W_m2(scene_.source, plan_.lanes[l].band));
+      for (std::uint64_t p = 0; p < pixels; ++p) {
+        const double a = read_.pixel(v, l, 0, p), b = read_.pixel(v, l, 1, p);
+        image->radiance_per_sr.push_back(0.5 * (a + b));
+        image->standard_error_per_sr.push_back(0.5 * std::fabs(a - b));
+      }
+    }
+  }
+
+  void counters() {
+    const auto& n = outcome_.sums.counters;
+    out_.diagnostics.non_finite += n[CLRAY_COUNT_NON_FINITE];
+    out_.diagnostics.stack_overflow += n[CLRAY_COUNT_STACK];
+    out_.diagnostics.lost_rays += n[CLRAY_COUNT_LOST];
+    out_.diagnostics.accumulator_overflow += n[CLRAY_COUNT_OVERFLOW];
+    out_.energy.started += n[CLRAY_COUNT_STARTED];
+    out_.energy.escaped += n[CLRAY_COUNT_ESCAPED];
+    out_.energy.killed += n[CLRAY_COUNT_KILLED];
+    out_.energy.capped += n[CLRAY_COUNT_CAPPED];
+  }
+
+  const Scene& scene_;
+  const Geometry& geometry_;
+  const PassPlan& plan_;
+  const PassOutcome& outcome_;
+  Reader read_;
+  Result& out_;
+  std::size_t first_orientation_ = 0;
+};
+
+}  // namespace
+
+std::vector<Target> targets_of(const PassPlan& plan, const Geometry& geometry, const Sums& sums) {
+  const Reader read(plan, sums);
+  std::vector<Target> targets;
+  if (plan.pixels) return targets;
+  for (std::size_t v = 0; v < plan.views.size(); ++v) {
+    for (std::size_t l = 0; l < plan.lanes.size(); ++l) {
+      for (std::size_t c = 0; c < plan.connections && plan.connect; ++c) {
+        Target t;
+        t.components.push_back(per_replicate(plan, [&](std::uint32_t r) { return read.total(v, l, c, r, 0); }));
+        targets.push_back(std::move(t));
+      }
+      if (!plan.pressure) continue;
+      Target force, torque;
+      for (int k = 0; k < 6; ++k) {
+        (k < 3 ? force : torque).components.push_back(per_replicate(plan, [&](std::uint32_t r) {
+          double sum = 0.0;
+          for (std::size_t part = 0; part < plan.components; ++part) sum += read.push(v, l, part, r, k);
+          return sum;
+        }));
+      }
+      double square = 0.0;
+      for (const auto& axis : force.components) {
+        const double mean = estimate_mean(axis).value;
+        square += mean * mean;
+      }
+      torque.scale = std::sqrt(square) * geometry.radius;
+      targets.push_back(std::move(force));
+      targets.push_back(std::move(torque));
+    }
+  }
+  return targets;
+}
+
+void largest_error(const std::vector<Target>& targets, double* relative_error, double* first_total) {
+  *relative_error = *first_total = kNan;
+  for (std::size_t t = 0; t < targets.size(); ++t) {
+    double value = 0.0, error = 0.0;
+    for (const auto& axis : targets[t].components) {
+      const Estimate e = estimate_mean(axis);
+      value += e.value * e.value;
+      error += e.standard_error * e.standard_error;
+    }
+    value = std::sqrt(value);
+    if (t == 0) *first_total = value;
+    const double scale = targets[t].scale > 0.0 ? targets[t].scale : value;
+    if (!(scale > 0.0)) continue;
+    const double relative = std::sqrt(error) / scale;
+    if (!(*relative_error >= relative)) *relative_error = relative;
+  }
+}
+
+void add_results(const Scene& scene, const Geometry& geometry, const PassPlan& plan, const PassOutcome& outcome,
+                 Result* result) {
+  Writer(scene, geometry, plan, outcome, result).write();
+}
+
+std::uint64_t digest_of(std::uint64_t state, const PassPlan& plan, const Sums& sums) {
+  const std::uint64_t head[3] = {static_cast<std::uint64_t>(plan.scale_bits), plan.replicates, sums.points};
+  state = fnv1a(state, head, sizeof head);
+  const auto add = [&](std::uint64_t first, std::uint64_t count) {
+    if (count != 0) state = fnv1a(state, sums.values.data() + first, count * sizeof(Sum));
+  };
+  // Only what the scene asked for: the generic program keeps more.
+  add(plan.constants.totals, plan.totals_size);
+  if (plan.pressure) add(plan.constants.pressure, plan.pressure_size);
+  if (plan.scatter) add(plan.constants.books, plan.books_size);
+  add(plan.constants.pixels, plan.pixels_size);
+  const std::uint64_t delays = plan.delays.empty() ? plan.sums_size : plan.delays.front().sums;
+  add(delays, plan.sums_size - delays);
+  if (!sums.hits.empty()) state = fnv1a(state, sums.hits.data(), sums.hits.size() * sizeof(std::uint64_t));
+  return state;
+}
+
+}  // namespace clray

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a pass ended with, and how its sums become results.
+#pragma once
+
+#include "pipeline/geometry.hpp"
+#include "pipeline/pass_runner.hpp"
+#include "pipeline/plan.hpp"
+
+namespace clray {
+
+struct PassOutcome {
+  Sums sums;
+  bool partial = false;
+  bool target_asked = false, target_reached = false;
+  std::uint64_t rays_total = 0;          ///< per view, all phases
+  std::vector<ErrorPoint> errors;
+};
+
+/// One total that a run's target is about, per replicate; vectors have three.
+struct Target {
+  std::vector<std::vector<double>> components;  ///< [axis][replicate]
+  double scale = 0.0;                           ///< what the half-width is compared with; 0: the value itself
+};
+
+/// Every total of a pass, in result units.
+std::vector<Target> targets_of(const PassPlan& plan, const Geometry& geometry, const Sums& sums);
+
+/// Largest relative standard error over the targets (NaN if all are zero), and the first target's value.
+void largest_error(const std::vector<Target>& targets, double* relative_error, double* first_total);
+
+/// Appends what the pass found to the result's detectors, energy books and diagnostics.
+void add_results(const Scene& scene, const Geometry& geometry, const PassPlan& plan, const PassOutcome& outcome,
+                 Result* result);
+
+/// Digest of a pass's sums, continued from `state`.
+std::uint64_t digest_of(std::uint64_t state, const PassPlan& plan, const Sums& sums);
+
+}  // namespace clray

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// Runs a pass on the devices: launches of bounded time, sums drained into 128 bits on the host. Knows nothing of what
+// the sums mean.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "clray/device.hpp"
+#include "pipeline/plan.hpp"
+
+namespace clray {
+
+using Sum = __int128;
+
+/// Integer sums of a pass so far; two runs of the same points have equal sums.
+struct Sums {
+  std::vector<Sum> values;                 ///< at scale 2^S, layout of the plan
+  std::vector<std::uint64_t> hits;
+  std::array<std::uint64_t, CLRAY_COUNTERS> counters{};
+  std::uint64_t points = 0;                ///< per replicate and view (and pixel)
+};
+
+/// One program and its buffers on every opened device.
+class PassRunner {
+ public:
+  PassRunner(Device& device, const PassPlan& plan, const Geometry& geometry, const TraceOptions& options);
+  ~PassRunner();
+
+  /// Adds points [sums->points, points) of epoch `epoch` to *sums. `keep_going` is asked between launches with the share
+  /// done; when it says no, returns false, and *sums is to be thrown away.
+  bool run(Sums* sums, std::uint64_t points, std::uint32_t epoch, const std::function<bool(double)>& keep_going);
+
+  /// Seconds spent building programs.
+  double compile_seconds() const { return compile_seconds_; }
+
+ private:
+  struct OnDevice;
+  void drain(Sums* sums);
+  bool run_block(std::uint32_t first_point, std::uint32_t points, const std::function<bool(double)>& keep_going);
+
+  const PassPlan& plan_;
+  const TraceOptions& options_;
+  std::vector<std::unique_ptr<OnDevice>> devices_;
+  double compile_seconds_ = 0.0;
+};
+
+}  // namespace clray

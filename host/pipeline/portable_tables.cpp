@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// Compiles the portable kernel files of all rows for the host (see portable_tables.hpp).
+#include "pipeline/portable_tables.hpp"
+
+#include "shared/elementary.h"
+
+namespace clray {
+namespace portable {
+
+#include "brdf/brdf.h"
+#include "generated/brdf_all.inc"
+#include "brdf/dispatch.cl"
+#include "shape/shape.h"
+#include "generated/shape_all.inc"
+#include "shape/dispatch.cl"
+
+}  // namespace portable
+
+double surface_reflectance(const ClrayMaterial& material, const std::vector<double>& tables, double mu) {
+  return portable::brdf_reflectance(&material, tables.data(), mu);
+}
+
+double surface_bound(const ClrayMaterial& material, const std::vector<double>& tables, double cos_half_phase) {
+  return portable::brdf_bound(&material, tables.data(), cos_half_phase);
+}
+
+double shape_support_of(int shape, const double* keys, const double direction[3]) {
+  return portable::shape_support(static_cast<u32>(shape), keys, v3(direction[0], direction[1], direction[2]));
+}
+
+double shape_area_of(int shape, const double* keys) {
+  return portable::shape_area(static_cast<u32>(shape), keys);
+}
+
+int shape_traits_of(int shape, const double* keys) { return portable::shape_traits(static_cast<u32>(shape), keys); }
+
+}  // namespace clray

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// The models of kernels/brdf and kernels/shape on the host: the same portable code that devices run, for bounds,
+// areas and directional reflectances.
+#pragma once
+
+#include <vector>
+
+#include "shared/abi.h"
+
+namespace clray {
+
+/// Directional-hemispherical reflectance at mu (by quadrature where there is no closed form).
+double surface_reflectance(const ClrayMaterial& material, const std::vector<double>& tables, double mu);
+
+/// Upper bound of f·mu_o over all normals at cos(phase/2); 1/sr.
+double surface_bound(const ClrayMaterial& material, const std::vector<double>& tables, double cos_half_phase);
+
+/// max over the shape of x·direction in its local frame, m. `keys`: the row's values in order.
+double shape_support_of(int shape, const double* keys, const double direction[3]);
+/// Area of one side, m².
+double shape_area_of(int shape, const double* keys);
+/// CLRAY_SHAPE_CLOSED | CLRAY_SHAPE_CONVEX | CLRAY_SHAPE_PLANE
+int shape_traits_of(int shape, const double* keys);
+
+}  // namespace clray

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+// Materials of a scene to the device's material table. Reflectances are dimensionless or 1/sr, wavelengths nm.
+#include "pipeline/surfaces.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "clray/error.hpp"
+#include "pipeline/portable_tables.hpp"
+#include "scene/spectrum.hpp"
+#include "scene/tables.hpp"
+
+namespace clray {
+namespace {
+
+const Material& material_of(const Scene& scene, const Lane& lane, const Material& base) {
+  if (lane.variant_index < 0) return base;
+  for (const Material& m : scene.variants[lane.variant_index].materials) {
+    if (m.name == base.name) return m;
+  }
+  return base;
+}
+
+/// Layout of a tabulated BRDF in `tables`: see kernels/brdf/tabulated.cl.
+std::uint32_t add_table(std::vector<double>& tables, const BrdfTable& table) {
+  const auto at = static_cast<std::uint32_t>(tables.size());
+  for (const auto* axis : {&table.theta_i_rad, &table.theta_o_rad, &table.phi_rad})
+    tables.push_back(static_cast<double>(axis->size()));
+  for (const auto* axis : {&table.theta_i_rad, &table.theta_o_rad, &table.phi_rad, &table.value})
+    tables.insert(tables.end(), axis->begin(), axis->end());
+  return at;
+}
+
+}  // namespace
+
+std::vector<Lane> lanes_of(const Scene& scene) {
+  std::vector<Lane> lanes;
+  const std::vector<Band> bands = bands_of(scene);
+  for (std::size_t v = 0; v < std::max<std::size_t>(scene.variants.size(), 1); ++v) {
+    for (const Band& band : bands) {
+      Lane lane;
+      if (!scene.variants.empty()) {
+        lane.variant = scene.variants[v].name;
+        lane.variant_index = static_cast<int>(v);
+      }
+      lane.band = band;
+      if (bands.size() > 1) lane.band_name = band.name;
+      lanes.push_back(lane);
+    }
+  }
+  return lanes;
+}
+
+Surfaces build_surfaces(const Scene& scene, const std::vector<Lane>& lanes, bool reflectance, bool thermal) {
+  Surfaces s;
+  s.columns = static_cast<std::uint32_t>(scene.materials.size());
+  std::vector<bool> used(table("brdf").size(), false);
+  std::map<const BrdfTable*, std::uint32_t> placed;
+  std::map<std::vector<double>, std::uint32_t> known;  // reflectance tables by what they depend on
+  for (const Lane& lane : lanes) {
+    for (const Material& base : scene.materials) {
+      const Material& m = material_of(scene, lane, base);
+      const int row = table_index("brdf", m.model);
+      if (row < 0) throw Error(ErrorCode::input, "unknown model \"" + m.model + "\"", "material " + m.name);
+      std::map<std::string, double> parameters = m.parameters;
+      for (const auto& [key, spectrum] : m.spectra)
+        parameters[key] = spectrum_mean(spectrum, lane.band.low_nm, lane.band.high_nm);
+      const std::vector<double> values = row_values(table("brdf")[row], parameters);
+      ClrayMaterial out{};
+      out.model = static_cast<std::uint32_t>(row);
+      out.flags = m.two_sided ? CLRAY_MATERIAL_TWO_SIDED : 0u;
+      for (std::size_t k = 0; k < values.size() && k < CLRAY_MATERIAL_PARAMETERS; ++k) out.p[k] = values[k];
+      if (thermal) out.emissivity = 1.0 - m.infrared_reflectance;
+      if (m.table) {
+        if (!placed.count(m.table.get())) placed[m.table.get()] = add_table(s.tables, *m.table);
+        out.table = placed[m.table.get()];
+      }
+      if (reflectance) {
+        std::vector<double> key(values);
+        key.push_back(row);
+        key.push_back(out.table);
+        const auto found = known.find(key);
+        if (found != known.end()) {
+          out.reflectance = found->second;
+        } else {
+          std::vector<double> nodes(CLRAY_REFLECTANCE_NODES);
+          for (int k = 0; k < CLRAY_REFLECTANCE_NODES; ++k)
+            nodes[k] = surface_reflectance(out, s.tables, std::max(1e-9, k / (CLRAY_REFLECTANCE_NODES - 1.0)));
+          out.reflectance = known[key] = static_cast<std::uint32_t>(s.tables.size());
+          s.tables.insert(s.tables.end(), nodes.begin(), nodes.end());
+        }
+      }
+      s.one_sided = s.one_sided || !m.two_sided;
+      s.delta = s.delta || m.model == "mirror";
+      used[row] = true;
+      s.materials.push_back(out);
+    }
+  }
+  for (std::size_t row = 0; row < used.size(); ++row) {
+    if (used[row]) s.models.push_back(static_cast<int>(row));
+  }
+  return s;
+}
+
+double weight_bound(const Surfaces& surfaces, double cos_half_phase) {
+  double bound = 0.0;
+  for (const ClrayMaterial& m : surfaces.materials)
+    bound = std::max(bound, surface_bound(m, surfaces.tables, cos_half_phase));
+  return bound;
+}
+
+}  // namespace clray

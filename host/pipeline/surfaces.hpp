@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// The material table of a pass: one row per lane (variant and band), one column per scene material, with the tables
+// that models look up. Also the bound of first-bounce weights, from which the fixed-point scale follows.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "clray/scene.hpp"
+#include "shared/abi.h"
+
+namespace clray {
+
+/// A variant and band under which hits are shaded.
+struct Lane {
+  std::string variant, band_name;
+  int variant_index = -1;  ///< -1: the scene as it is
+  Band band;
+};
+
+struct Surfaces {
+  std::vector<ClrayMaterial> materials;  ///< [lane][material]
+  std::vector<double> tables;
+  std::uint32_t columns = 0;
+  std::vector<int> models;               ///< rows of brdf.def in use, ascending
+  bool one_sided = false;                ///< some material has a black back
+  bool delta = false;                    ///< some material is a mirror
+};
+
+/// Every (variant, band) of the scene, variants outermost.
+std::vector<Lane> lanes_of(const Scene& scene);
+
+/// Materials of `lanes`; `reflectance`: tables of directional reflectance too; `thermal`: emissivities too.
+Surfaces build_surfaces(const Scene& scene, const std::vector<Lane>& lanes, bool reflectance, bool thermal);
+
+/// Bound of f·mu_o over all lanes and materials at cos(phase/2); 1/sr.
+double weight_bound(const Surfaces& surfaces, double cos_half_phase);
+
+}  // namespace clray

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: Apache-2.0
+// Views of a pass (see views.hpp). The beam is a rectangle across the direction to the source: the fp64 bound of the
+// body; for a source at +z or -z its axes are x and y (PHYSICS section 1).
+#include "pipeline/views.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "shared/elementary.h"
+
+namespace clray {
+namespace {
+
+constexpr double kPictureMargin = 1.06;
+
+Point point_of(const Vec3& v) { return {{v.x, v.y, v.z}}; }
+Vec3 vec_of(const vec3& v) { return {v.x, v.y, v.z}; }
+vec3 v3_of(const Vec3& v) { return v3(v.x, v.y, v.z); }
+void store(double* out, const vec3& v) {
+  out[0] = v.x;
+  out[1] = v.y;
+  out[2] = v.z;
+}
+
+std::vector<RigidMotion> motions_of(const Scene& scene, const Geometry& geometry, const Orientation& orientation) {
+  std::vector<RigidMotion> motions;
+  for (const Part& part : geometry.parts)
+    motions.push_back(part_motion(scene, part, orientation.source,
+                                  orientation.observers.empty() ? orientation.source : orientation.observers[0]));
+  return motions;
+}
+
+double sine_of_degrees(double degrees) {
+  if (degrees == 0.0 || std::fabs(degrees) == 180.0) return 0.0;
+  if (std::fabs(degrees) == 90.0) return degrees > 0.0 ? 1.0 : -1.0;
+  double s, c;
+  el_sincos(degrees * (CLRAY_PI / 180.0), &s, &c);
+  return s;
+}
+
+void set_frame(const BoxFrame& frame, ClrayView* view) {
+  std::copy(frame.centre.begin(), frame.centre.end(), view->box_centre);
+  view->box_scale = frame.scale;
+}
+
+/// Instances and top-level tree of one view.
+void place_parts(const Geometry& geometry, const std::vector<RigidMotion>& motions, PassPlan* plan, ClrayView* view) {
+  std::vector<Box> boxes;
+  std::vector<std::size_t> members;
+  for (std::size_t p = 0; p < geometry.parts.size(); ++p) {
+    const Part& part = geometry.parts[p];
+    if (part.box.empty()) continue;
+    Box box;
+    for (int corner = 0; corner < 8; ++corner) {
+      Point x, back;
+      for (int k = 0; k < 3; ++k)
+        x[k] = (corner >> k & 1 ? part.box.high[k] : part.box.low[k]) - motions[p].translation[k];
+      const std::array<double, 9>& m = motions[p].rotation;
+      for (int k = 0; k < 3; ++k) back[k] = std::fma(m[k], x[0], std::fma(m[3 + k], x[1], m[6 + k] * x[2]));
+      box.add(back);
+    }
+    for (int k = 0; k < 3; ++k) {
+      const double pad = 1e-14 * (std::fabs(box.low[k]) + std::fabs(box.high[k]) + geometry.radius);
+      box.low[k] -= pad;
+      box.high[k] += pad;
+    }
+    boxes.push_back(box);
+    members.push_back(p);
+  }
+  const LinearBvh top = build_bvh(boxes);
+  view->root = static_cast<std::uint32_t>(plan->nodes.size());
+  view->first_instance = static_cast<std::uint32_t>(plan->instances.size());
+  for (const std::uint32_t position : top.order) {
+    const Part& part = geometry.parts[members[position]];
+    const RigidMotion& motion = motions[members[position]];
+    ClrayInstance instance{};
+    std::copy(motion.rotation.begin(), motion.rotation.end(), instance.rotation);
+    std::copy(motion.translation.begin(), motion.translation.end(), instance.translation);
+    std::copy(part.frame.centre.begin(), part.frame.centre.end(), instance.box_centre);
+    instance.box_scale = part.frame.scale;
+    instance.root = part.root;
+    instance.moved = part.hinged_component >= 0 ? 1u : 0u;
+    plan->instances.push_back(instance);
+  }
+  for (ClrayNode node : top.nodes) {
+    for (std::uint32_t& child : node.child) {
+      if (child != CLRAY_NO_CHILD) child += (child & 15u ? view->first_instance : view->root) << 4;
+    }
+    plan->nodes.push_back(node);
+  }
+  set_frame(top.frame, view);
+}
+
+void add_connection(const Vec3& direction, double acceptance_rad, bool shadow, PassPlan* plan) {
+  ClrayConnection row{};
+  row.direction[0] = direction.x;
+  row.direction[1] = direction.y;
+  row.direction[2] = direction.z;
+  if (acceptance_rad > 0.0) {
+    double s, c;
+    el_sincos(0.5 * acceptance_rad, &s, &c);
+    row.acceptance_chord2 = 4.0 * s * s;
+    row.inv_solid_angle = 1.0 / (CLRAY_PI * row.acceptance_chord2);  // 2π(1 − cos a) = π·chord²
+  }
+  row.shadow = shadow ? 1u : 0u;
+  plan->connection_rows.push_back(row);
+}
+
+void beam_rectangle(const Geometry& geometry, const std::vector<RigidMotion>& motions, PassPlan* plan,
+                    ClrayView* view) {
+  const vec3 s = v3(view->toward[0], view->toward[1], view->toward[2]);
+  vec3 t, b;
+  v3_frame(s, &t, &b);
+  double u0, u1, v0, v1, w0, w1;
+  body_extent(geometry, motions, {{t.x, t.y, t.z}}, &u0, &u1);
+  body_extent(geometry, motions, {{b.x, b.y, b.z}}, &v0, &v1);
+  body_extent(geometry, motions, {{s.x, s.y, s.z}}, &w0, &w1);
+  const double start = w1 + std::ldexp(geometry.radius, -4);
+  store(view->corner, v3_fma(u0, t, v3_fma(v0, b, v3_scale(start, s))));
+  store(view->edge_u, v3_scale(u1 - u0, t));
+  store(view->edge_v, v3_scale(v1 - v0, b));
+  plan->area_m2.push_back((u1 - u0) * (v1 - v0));
+}
+
+/// Image axes: up is the space frame's +y as seen in the body frame (or -z/+z where the view is along it).
+void picture_axes(const Orientation& orientation, const Vec3& toward, PassPlan* plan) {
+  const Quaternion q = orientation.body_to_space;
+  const auto to_body = [&](const Vec3& v) {
+    const Vec3 u(-q.x, -q.y, -q.z);
+    const Vec3 c(u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x);
+    const Vec3 d(u.y * c.z - u.z * c.y, u.z * c.x - u.x * c.z, u.x * c.y - u.y * c.x);
+    return v + 2.0 * (q.w * c + d);
+  };
+  const vec3 o = v3_of(toward);
+  vec3 up = v3_of(to_body(Vec3(0.0, 1.0, 0.0)));
+  if (std::fabs(v3_dot(up, o)) > 0.999) up = v3_of(to_body(Vec3(0.0, 0.0, v3_dot(up, o) > 0.0 ? -1.0 : 1.0)));
+  const vec3 right = v3_unit(v3_cross(up, o));
+  plan->right.push_back(vec_of(right));
+  plan->up.push_back(vec_of(v3_unit(v3_cross(o, right))));
+}
+
+/// Frames the body in every view with the same pixel size; row 0 is on top.
+void frame_pictures(const Geometry& geometry, const std::vector<std::vector<RigidMotion>>& motions, PassPlan* plan) {
+  std::vector<std::array<double, 5>> extents;  // centre right, centre up, half right, half up, nearest
+  double half_right = 0.0, half_up = 0.0;
+  for (std::size_t v = 0; v < plan->views.size(); ++v) {
+    double a, b, c, d, e, f;
+    body_extent(geometry, motions[v], point_of(plan->right[v]), &a, &b);
+    body_extent(geometry, motions[v], point_of(plan->up[v]), &c, &d);
+    const double* o = plan->views[v].toward;
+    body_extent(geometry, motions[v], {{o[0], o[1], o[2]}}, &e, &f);
+    extents.push_back({{0.5 * (a + b), 0.5 * (c + d), 0.5 * (b - a), 0.5 * (d - c), f}});
+    half_right = std::max(half_right, 0.5 * (b - a));
+    half_up = std::max(half_up, 0.5 * (d - c));
+  }
+  const double width = plan->width, height = plan->height;
+  plan->pixel_m = kPictureMargin * 2.0 * std::max({half_right / width, half_up / height, 1e-6 * geometry.radius});
+  for (std::size_t v = 0; v < plan->views.size(); ++v) {
+    ClrayView& view = plan->views[v];
+    const vec3 right = v3_of(plan->right[v]), up = v3_of(plan->up[v]);
+    const vec3 o = v3(view.toward[0], view.toward[1], view.toward[2]);
+    const double left = extents[v][0] - 0.5 * width * plan->pixel_m;
+    const double top = extents[v][1] + 0.5 * height * plan->pixel_m;
+    const double start = extents[v][4] + std::ldexp(geometry.radius, -4);
+    store(view.corner, v3_fma(left, right, v3_fma(top, up, v3_scale(start, o))));
+    store(view.edge_u, v3_scale(width * plan->pixel_m, right));
+    store(view.edge_v, v3_scale(-height * plan->pixel_m, up));
+    plan->area_m2.push_back(plan->pixel_m * plan->pixel_m);
+  }
+}
+
+}  // namespace
+
+Vec3 direction_from_degrees(double azimuth_deg, double elevation_deg) {
+  const double azimuth = azimuth_deg > 180.0 ? azimuth_deg - 360.0 : azimuth_deg;
+  const auto cosine = [](double degrees) { return sine_of_degrees(90.0 - std::fabs(degrees)); };
+  const double c = cosine(elevation_deg);
+  return {c * cosine(azimuth), c * sine_of_degrees(azimuth), sine_of_degrees(elevation_deg)};
+}
+
+void build_views(const Scene& scene, const Geometry& geometry, PassPlan* plan) {
+  plan->nodes = geometry.nodes;
+  const bool instanced = !scene.trace.specialise ||
+                         std::any_of(geometry.parts.begin(), geometry.parts.end(),
+                                     [](const Part& part) { return part.hinged_component >= 0; });
+  std::vector<std::vector<RigidMotion>> all_motions;
+  for (const Orientation& orientation : plan->orientations) {
+    const std::vector<RigidMotion> motions = motions_of(scene, geometry, orientation);
+    ClrayView view{};
+    const Vec3& toward = plan->pixels ? orientation.observers[plan->pixel_observer] : orientation.source;
+    store(view.toward, v3_of(toward));
+    view.root = geometry.parts[0].root;
+    set_frame(geometry.parts[0].frame, &view);
+    if (instanced) place_parts(geometry, motions, plan, &view);
+    if (plan->pixels) {
+      const bool monostatic = scene.observers[plan->pixel_observer].monostatic && !scene.trace.force_bistatic;
+      add_connection(orientation.source, 0.0, !monostatic, plan);
+      picture_axes(orientation, toward, plan);
+    } else {
+      for (std::uint32_t c = 0; c < plan->connections; ++c) {
+        const Observer& observer = scene.observers[c];
+        const bool shadow = !(orientation.observers[c] == orientation.source) || scene.trace.force_bistatic;
+        add_connection(orientation.observers[c], observer.acceptance_rad, shadow, plan);
+      }
+      beam_rectangle(geometry, motions, plan, &view);
+    }
+    plan->views.push_back(view);
+    all_motions.push_back(motions);
+  }
+  if (plan->pixels) frame_pictures(geometry, all_motions, plan);
+}
+
+void path_extent(const Scene& scene, const Geometry& geometry, const PassPlan& plan, std::size_t v, std::uint32_t c,
+                 double* low, double* high) {
+  const double* s = plan.views[v].toward;
+  const double* o = plan.connection_rows[v * plan.connections + c].direction;
+  const Point sum{{s[0] + o[0], s[1] + o[1], s[2] + o[2]}};
+  double a, b;
+  body_extent(geometry, motions_of(scene, geometry, plan.orientations[v]), sum, &a, &b);
+  const Vec3& r = scene.reference_point;
+  const double reference = std::fma(sum[0], r.x, std::fma(sum[1], r.y, sum[2] * r.z));
+  *low = reference - b;
+  *high = reference - a;
+}
+
+}  // namespace clray

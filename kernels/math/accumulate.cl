@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// Adding without an order: numbers become 64-bit integers q = rte(w·2^S), so sums have the same bits whatever the
+// order of work. NaN and infinity are sorted out before the conversion (devices differ there); a number too large
+// for the first accumulator goes whole into a second at scale S - 32; one too large for that is counted.
+#ifndef CLRAY_ACCUMULATE_CL
+#define CLRAY_ACCUMULATE_CL
+
+#include "math/atomic64.cl"
+
+#define CLRAY_TWO_TO_MINUS_32 2.3283064365386963e-10
+#define CLRAY_WIDE_LIMIT 274877906944.0  // 2^38: with 2^24 contributions a slice the sum stays below 2^62
+
+static void count_event(volatile __global i64 *counters, u32 which) { atomic_add_i64(counters + which, 1); }
+
+/// Splits `value` into an integer for the first (returned) or second (*wide) accumulator.
+static i64 to_fixed(f64 value, f64 scale, f64 limit, i64 *wide, volatile __global i64 *counters) {
+  *wide = 0;
+  const f64 size = fabs(value);
+  if (size <= limit) return convert_long_rte(value * scale);
+#if CLRAY_WIDE
+  const f64 scaled = value * (scale * CLRAY_TWO_TO_MINUS_32);
+  if (fabs(scaled) <= CLRAY_WIDE_LIMIT) {
+    *wide = convert_long_rte(scaled);
+    return 0;
+  }
+#endif
+  count_event(counters, size - size == 0.0 ? CLRAY_COUNT_OVERFLOW : CLRAY_COUNT_NON_FINITE);
+  return 0;
+}
+
+/// Adds `value` to accumulator `at`.
+static void accumulate(volatile __global i64 *sums, volatile __global i64 *wide_sums, u64 at, f64 value, f64 scale,
+                       f64 limit, volatile __global i64 *counters) {
+  i64 wide;
+  const i64 q = to_fixed(value, scale, limit, &wide, counters);
+  if (q != 0) atomic_add_i64(sums + at, q);
+#if CLRAY_WIDE
+  if (wide != 0) atomic_add_i64(wide_sums + at, wide);
+#endif
+}
+
+#endif

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// Stage 1, generate: a primary ray of a view. A beam's rays fill the rectangle that bounds the body across the
+// direction to the source; a picture's fill their pixel.
+#ifndef CLRAY_GENERATE_CL
+#define CLRAY_GENERATE_CL
+
+static Ray stage_generate(const Buffers *g, const Sampler *sampler, const Tally *tally, Path *path) {
+  const __global ClrayView *view = g->views + tally->view;
+  f64 u[2];
+  sampler_draw(sampler, g->directions, 0u, 2u, 2u, u);
+#if CLRAY_PIXELS
+  const u32 pixel = tally->stream - 1u;
+  const u32 width = g->pass->width;
+  u[0] = ((f64)(pixel % max(width, 1u)) + u[0]) / (f64)width;
+  u[1] = ((f64)(pixel / max(width, 1u)) + u[1]) / (f64)g->pass->height;
+#endif
+  Ray ray;
+  ray.o = v3_fma(u[0], v3_load(view->edge_u), v3_fma(u[1], v3_load(view->edge_v), v3_load(view->corner)));
+  ray.d = v3_neg(v3_load(view->toward));
+  ray.skip_primitive = 0xffffffffu;
+  ray.skip_instance = 0u;
+  path->length = 0.0;
+  path->delta = 0u;
+  for (u32 lane = 0; lane < CLRAY_LANES; ++lane) path->throughput[lane] = 1.0;
+  return ray;
+}
+
+#endif

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: Apache-2.0
+// Stage 2, intersect: the nearest hit of a ray, or whether anything is in its way. fp32 boxes cull, fp64 decides; equal
+// distances go to the smaller canonical id. With hinged parts the top level of the BVH holds instances, each with a
+// tree of its own in its own frame; motions are rigid, so distances are common to all frames.
+#ifndef CLRAY_INTERSECT_CL
+#define CLRAY_INTERSECT_CL
+
+/// The ray in the frame of an instance (or as it is).
+typedef struct LocalRay {
+  vec3 o, d;
+#if CLRAY_TRIANGLES
+  RayShear shear;
+#endif
+} LocalRay;
+
+static LocalRay local_ray(vec3 o, vec3 d) {
+  LocalRay r;
+  r.o = o;
+  r.d = d;
+#if CLRAY_TRIANGLES
+  r.shear = triangle_shear(o, d);
+#endif
+  return r;
+}
+
+static vec3 rotate(const __global f64 *m, vec3 a) {
+  return v3(fma(m[0], a.x, fma(m[1], a.y, m[2] * a.z)), fma(m[3], a.x, fma(m[4], a.y, m[5] * a.z)),
+            fma(m[6], a.x, fma(m[7], a.y, m[8] * a.z)));
+}
+
+static vec3 rotate_back(const __global f64 *m, vec3 a) {
+  return v3(fma(m[0], a.x, fma(m[3], a.y, m[6] * a.z)), fma(m[1], a.x, fma(m[4], a.y, m[7] * a.z)),
+            fma(m[2], a.x, fma(m[5], a.y, m[8] * a.z)));
+}
+
+#if CLRAY_INSTANCED
+static vec3 to_instance(const __global ClrayInstance *instance, vec3 point) {
+  return v3_add(rotate(instance->rotation, point), v3_load(instance->translation));
+}
+#endif
+
+#if CLRAY_ANALYTIC
+static vec3 shape_to_local(const __global f64 *data, vec3 point) {
+  const f64 scale = data[CLRAY_SHAPE_SCALE];
+  const vec3 moved = rotate(data, v3_sub(point, v3_load(data + CLRAY_SHAPE_ORIGIN)));
+  return v3(moved.x / scale, moved.y / scale, moved.z / scale);
+}
+#endif
+
+/// Tests one primitive; a nearer hit (or one as near with a smaller id) replaces *hit.
+static void test_primitive(const Buffers *g, const LocalRay *ray, u32 index, u32 instance, Hit *hit) {
+  const __global ClrayPrimitive *primitive = g->primitives + index;
+  const __global f64 *data = g->shapes + primitive->data;
+  f64 t;
+  u32 part = 0u;
+  vec3 weights = v3(0.0, 0.0, 0.0);
+  i32 found;
+#if CLRAY_ANALYTIC
+#if CLRAY_TRIANGLES
+  if (primitive->shape == CLRAY_SHAPE_triangle) {
+    found = triangle_intersect(data, &ray->shear, hit->t, &t, &weights);
+  } else
+#endif
+  {
+    const f64 scale = data[CLRAY_SHAPE_SCALE];
+    found = shape_intersect(primitive->shape, data + CLRAY_SHAPE_KEYS, shape_to_local(data, ray->o),
+                            rotate(data, ray->d), hit->t / scale, &t, &part);
+    if (found) t *= scale;
+  }
+#else
+  found = triangle_intersect(data, &ray->shear, hit->t, &t, &weights);
+#endif
+  if (!found || t > hit->t || (t == hit->t && primitive->id >= hit->id)) return;
+  hit->t = t;
+  hit->primitive = index;
+  hit->instance = instance;
+  hit->id = primitive->id;
+  hit->part = part;
+  hit->weights = weights;
+}
+
+/// Walks one tree; with `any` it stops at the first hit of all.
+static void intersect_tree(const Buffers *g, const Ray *ray, const LocalRay *local, vec3 centre, f64 scale, u32 root,
+                           u32 instance, u32 any, Hit *hit) {
+  BvhWalk walk;
+  u32 first, count;
+  bvh_begin(&walk, root, local->o, local->d, centre, scale);
+  while (bvh_next(&walk, g->nodes, hit->t, &first, &count, g->counters)) {
+    for (u32 k = first; k < first + count; ++k) {
+      if (k == ray->skip_primitive && instance == ray->skip_instance) continue;
+      test_primitive(g, local, k, instance, hit);
+    }
+    if (any && hit->primitive != 0xffffffffu) return;
+  }
+}
+
+/// The nearest hit (or, with `any`, some hit): 1, or 0 when the ray escapes.
+static i32 intersect(const Buffers *g, const Ray *ray, u32 view, u32 any, Hit *hit) {
+  const __global ClrayView *from = g->views + view;
+  const vec3 centre = v3_load(from->box_centre);
+  hit->t = INFINITY;
+  hit->primitive = 0xffffffffu;
+  hit->id = 0xffffffffu;
+  hit->instance = 0u;
+#if CLRAY_INSTANCED
+  BvhWalk walk;
+  u32 first, count;
+  bvh_begin(&walk, from->root, ray->o, ray->d, centre, from->box_scale);
+  while (bvh_next(&walk, g->nodes, hit->t, &first, &count, g->counters)) {
+    for (u32 k = first; k < first + count; ++k) {
+      const __global ClrayInstance *instance = g->instances + k;
+      const LocalRay local = instance->moved ? local_ray(to_instance(instance, ray->o), rotate(instance->rotation, ray->d))
+                                             : local_ray(ray->o, ray->d);
+      intersect_tree(g, ray, &local, v3_load(instance->box_centre), instance->box_scale, instance->root, k, any, hit);
+      if (any && hit->primitive != 0xffffffffu) return 1;
+    }
+  }
+#else
+  const LocalRay local = local_ray(ray->o, ray->d);
+  intersect_tree(g, ray, &local, centre, from->box_scale, from->root, 0u, any, hit);
+#endif
+  return hit->primitive != 0xffffffffu;
+}
+
+static f64 size_of(vec3 a) { return fabs(a.x) + fabs(a.y) + fabs(a.z); }
+
+/// Point, normal and material of a hit.
+static Surface hit_surface(const Buffers *g, const Ray *ray, const Hit *hit) {
+  const __global ClrayPrimitive *primitive = g->primitives + hit->primitive;
+  const __global f64 *data = g->shapes + primitive->data;
+  ShapeSurface s;
+#if CLRAY_ANALYTIC
+#if CLRAY_TRIANGLES
+  if (primitive->shape == CLRAY_SHAPE_triangle) {
+    s = triangle_surface(data, hit->weights);
+  } else
+#endif
+  {
+    vec3 o = ray->o, d = ray->d;
+#if CLRAY_INSTANCED
+    const __global ClrayInstance *instance = g->instances + hit->instance;
+    if (instance->moved) {
+      o = to_instance(instance, o);
+      d = rotate(instance->rotation, d);
+    }
+#endif
+    const f64 scale = data[CLRAY_SHAPE_SCALE];
+    const vec3 origin = v3_load(data + CLRAY_SHAPE_ORIGIN);
+    s = shape_surface(primitive->shape, data + CLRAY_SHAPE_KEYS, shape_to_local(data, o), rotate(data, d),
+                      hit->t / scale, hit->part);
+    s.point = v3_add(rotate_back(data, v3_scale(scale, s.point)), origin);
+    s.normal = rotate_back(data, s.normal);
+    // Carrying the point out of the local frame rounds it again.
+    s.error = fma(scale, s.error, 8.0e-16 * (size_of(s.point) + size_of(origin)));
+  }
+#else
+  s = triangle_surface(data, hit->weights);
+#endif
+#if CLRAY_INSTANCED
+  if (g->instances[hit->instance].moved) {
+    const __global ClrayInstance *instance = g->instances + hit->instance;
+    const vec3 moved = v3_load(instance->translation);
+    s.point = rotate_back(instance->rotation, v3_sub(s.point, moved));
+    s.normal = rotate_back(instance->rotation, s.normal);
+    s.error = fma(8.0e-16, size_of(s.point) + size_of(moved), s.error);
+  }
+#endif
+  Surface surface;
+  surface.point = s.point;
+  surface.normal = s.normal;
+  surface.error = s.error;
+  surface.toward = v3_neg(ray->d);
+  surface.mu = v3_dot(surface.normal, surface.toward);
+  surface.material = primitive->material;
+  surface.component = primitive->component;
+  surface.primitive = hit->primitive;
+  surface.instance = hit->instance;
+  surface.plane = primitive->flags & CLRAY_PRIMITIVE_PLANE;
+  surface.lit = 1u;
+  if (surface.mu < 0.0) {
+    surface.normal = v3_neg(surface.normal);
+    surface.mu = -surface.mu;
+#if CLRAY_ONE_SIDED
+    surface.lit = g->materials[g->pass->first_lane * CLRAY_MATERIALS + primitive->material].flags &
+                  CLRAY_MATERIAL_TWO_SIDED;
+#endif
+  }
+  return surface;
+}
+
+/// The stage: 1 and the surface that the ray hits first, or 0.
+static i32 stage_intersect(const Buffers *g, const Ray *ray, u32 view, Surface *surface) {
+  Hit hit;
+  if (!intersect(g, ray, view, 0u, &hit)) return 0;
+  *surface = hit_surface(g, ray, &hit);
+  if (!(surface->mu >= 0.0 && surface->mu <= 2.0)) {
+    count_event(g->counters, CLRAY_COUNT_LOST);
+    surface->lit = 0u;
+    surface->mu = 0.0;
+  }
+  return 1;
+}
+
+/// A ray that leaves a surface toward d, started off the surface by more than the point's error.
+static Ray ray_from(const Surface *surface, vec3 d) {
+  Ray ray;
+  ray.o = v3_fma(surface->error, surface->normal, surface->point);
+  ray.d = d;
+  ray.skip_primitive = surface->plane ? surface->primitive : 0xffffffffu;
+  ray.skip_instance = surface->instance;
+  return ray;
+}
+
+#if CLRAY_SHADOW
+/// Whether anything lies between a surface and infinity in direction d.
+static i32 shadowed(const Buffers *g, const Surface *surface, u32 view, vec3 d) {
+  const Ray ray = ray_from(surface, d);
+  Hit hit;
+  return intersect(g, &ray, view, 1u, &hit);
+}
+#endif
+
+#endif

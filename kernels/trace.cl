@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// The entry point of every pass: reads as the pipeline. A work-item carries a few consecutive points of one replicate
+// of one view (and pixel) through generate, intersect, shade and record, bounce by bounce, and adds its sums at the end.
+// clang-format off: the order of the includes is the order of the layers
+#include "shared/portable.h"
+#include "shared/abi.h"
+#include "shared/elementary.h"
+#include "math/accumulate.cl"
+#include "math/sobol.cl"
+#include "brdf/brdf.h"
+#include "generated/brdf_all.inc"
+#include "brdf/dispatch.cl"
+#include "shape/shape.h"
+#include "generated/shape_all.inc"
+#include "shape/dispatch.cl"
+#include "math/bvh_walk.cl"
+#include "stage/state.cl"
+#include "stage/generate.cl"
+#include "stage/intersect.cl"
+#include "stage/shade.cl"
+#include "stage/record.cl"
+#include "stage/path.cl"
+// clang-format on
+
+/// Items first_item … first_item + items - 1 of the block of points first_point … first_point + points - 1 of every
+/// replicate; an item is (view, pixel, replicate, chunk of `chunk` points), chunk running fastest.
+__kernel void clray_trace(const __global ClrayPass *pass, const __global ClrayView *views,
+                          const __global ClrayConnection *connections, const __global ClrayNode *nodes,
+                          const __global ClrayPrimitive *primitives, const __global f64 *shapes,
+                          const __global ClrayInstance *instances, const __global ClrayMaterial *materials,
+                          const __global f64 *tables, const __global u32 *directions, const __global ClrayDelay *delays,
+                          volatile __global i64 *sums, volatile __global i64 *wide, volatile __global u32 *hits,
+                          volatile __global i64 *counters, u64 first_item, u32 items, u32 first_point, u32 points,
+                          u32 chunk) {
+  if (get_global_id(0) >= items) return;
+  const Buffers g = {pass,   views,      connections, nodes, primitives, shapes, instances, materials,
+                     tables, directions, delays,      sums,  wide,       hits,   counters};
+  const u32 chunks = (points + chunk - 1u) / max(chunk, 1u);
+  u64 item = first_item + get_global_id(0);
+  const u32 begin = (u32)(item % max(chunks, 1u)) * chunk;
+  item /= max(chunks, 1u);
+  Tally tally;
+  tally.replicate = (u32)(item % max(pass->replicates, 1u));
+  item /= max(pass->replicates, 1u);
+#if CLRAY_PIXELS
+  const u64 pixels = max((u64)pass->width * pass->height, (u64)1);
+  tally.stream = 1u + (u32)(item % pixels);
+  item /= pixels;
+#else
+  tally.stream = 0u;
+#endif
+  tally.view = (u32)item;
+  tally_clear(&tally);
+  Sampler sampler = {pass->key0, pass->key1, pass->epoch, tally.replicate, tally.stream, 0u};
+  const u32 end = min(begin + chunk, points);
+  for (u32 k = begin; k < end; ++k) {
+    sampler.index = first_point + k;
+    trace_path(&g, &sampler, &tally);
+  }
+  tally_flush(&g, &tally);
+}
