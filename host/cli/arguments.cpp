@@ -64,17 +64,38 @@ std::string suggestion(const CLI::App& app, const std::string& word) {
   return best.empty() ? "" : "; did you mean " + best + "?";
 }
 
+/// Help in lines of at most 66 characters; CLI11 indents what follows a line break.
+std::string wrapped(const std::string& text) {
+  constexpr std::size_t kWidth = 66;
+  std::string lines;
+  std::size_t column = 0;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(' ', begin), text.size());
+    const std::size_t length = end - begin;
+    if (column > 0) {
+      const bool fits = column + 1 + length <= kWidth;
+      lines += fits ? ' ' : '\n';
+      column = fits ? column + 1 : 0;
+    }
+    lines.append(text, begin, length);
+    column += length;
+    begin = end + 1;
+  }
+  return lines;
+}
+
 CLI::Option* text_option(CLI::App& app, const std::string& name, std::string& value, const std::string& value_name,
                          const std::string& help, const std::string& group) {
-  return app.add_option(name, value, help)->type_name(value_name)->group(group)->expected(1);
+  return app.add_option(name, value, wrapped(help))->type_name(value_name)->group(group)->expected(1);
 }
 
 void add_options(CLI::App& app, Arguments& a, Texts& t) {
   const std::string scene = "Scene", run = "Run", output = "Output", ask = "Questions", test = "For tests of identity";
   app.add_option("SCENE", a.scene, "mesh (.obj .ply .stl .off) or scene file (.toml)")->type_name("");
-  app.add_option("--detector", a.scene_options.detectors,
-                 "what is measured, may be repeated: delay, spectrometer, pressure, rgb, hyperspectral; replaces the "
-                 "scene file's list [delay for a mesh]")
+  app.add_option(
+         "--detector", a.scene_options.detectors,
+         wrapped("what is measured, may be repeated: delay, spectrometer, pressure, rgb, hyperspectral; replaces the "
+                 "scene file's list [delay for a mesh]"))
       ->type_name("KIND")
       ->group(scene)
       ->expected(1)
@@ -109,23 +130,25 @@ void add_options(CLI::App& app, Arguments& a, Texts& t) {
               output);
   text_option(app, "--reference", a.reference, "FILE", "a summary.json or delay.csv to measure the true error against",
               output);
-  app.add_flag("--no-plots", a.no_plots, "no plots (tables and pictures are still written)")->group(output);
-  app.add_flag("--quiet", a.quiet, "no progress and no closing table, only the device, the total and warnings")
+  app.add_flag("--no-plots", a.no_plots, wrapped("no plots (tables and pictures are still written)"))->group(output);
+  app.add_flag("--quiet", a.quiet, wrapped("no progress and no closing table, only the device, the total and warnings"))
       ->group(output);
-  app.add_flag("--explain", a.explain, "what was compiled in and what was left out for this scene, and why")
+  app.add_flag("--explain", a.explain, wrapped("what was compiled in and what was left out for this scene, and why"))
       ->group(output);
 
   app.add_option("--list", a.list, "print the devices, or the rows of a table, and end")
       ->type_name("devices|brdf|shape|detector")
       ->group(ask)
       ->expected(1);
-  app.add_flag("--check", a.check, "check the scene, print what was understood, trace nothing")->group(ask);
-  app.add_flag("--dump-kernel", a.dump_kernel, "print the OpenCL program that would run for the scene")->group(ask);
+  app.add_flag("--check", a.check, wrapped("check the scene, print what was understood, trace nothing"))->group(ask);
+  app.add_flag("--dump-kernel", a.dump_kernel, wrapped("print the OpenCL program that would run for the scene"))
+      ->group(ask);
   app.set_version_flag("--version", "clray " CLRAY_VERSION, "print the version and end")->group(ask);
   app.set_help_flag("-h,--help", "print this help and end")->group(ask);
 
-  app.add_flag("--no-specialise", a.no_specialise, "run the generic program: same digest, slower")->group(test);
-  app.add_flag("--force-bistatic", a.force_bistatic, "shadow rays even where the observer is at the source")
+  app.add_flag("--no-specialise", a.no_specialise, wrapped("run the generic program: same digest, slower"))
+      ->group(test);
+  app.add_flag("--force-bistatic", a.force_bistatic, wrapped("shadow rays even where the observer is at the source"))
       ->group(test);
   text_option(app, "--work-group", t.group, "N", "work-items per work-group, 1 to 1024 [64]", test);
   text_option(app, "--slice-points", t.slice, "N", "points per replicate and launch [sized to time]", test);
@@ -164,7 +187,7 @@ void parse_values(Arguments& a, const Texts& t) {
 }
 
 /// CLI11's words about what is wrong, in ours.
-[[noreturn]] void complain(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
+[[noreturn]] void complain(const CLI::App& app, const CLI::ParseError& error) {
   if (dynamic_cast<const CLI::ExtrasError*>(&error)) {
     for (const auto& word : app.remaining()) {
       if (word.size() > 1 && word[0] == '-') {
@@ -176,8 +199,6 @@ void parse_values(Arguments& a, const Texts& t) {
     throw Error(ErrorCode::usage,
                 "one scene at a time: '" + (extra.empty() ? "?" : extra.front()) + "' is one too many");
   }
-  (void)argc;
-  (void)argv;
   throw Error(ErrorCode::usage, std::string(error.what()) + " (clray --help explains the options)");
 }
 
@@ -218,7 +239,7 @@ Arguments parse_arguments(int argc, char** argv) {
     arguments.finished = true;
     return arguments;
   } catch (const CLI::ParseError& error) {
-    complain(app, error, argc, argv);
+    complain(app, error);
   }
   parse_values(arguments, texts);
   check_whole(arguments);

@@ -148,7 +148,7 @@ std::string member(const ResultKey& key, std::size_t orientations) {
 }
 
 /// Rows beyond which a table no longer fits a screen; the files have them all.
-constexpr std::size_t kMostRows = 24;
+constexpr std::size_t kMostRows = 12;
 
 std::string more_rows(std::size_t count) {
   return count > kMostRows ? fmt::format("  … and {} more in the files\n", count - kMostRows) : "";
@@ -195,23 +195,39 @@ std::string bands(const Result& result) {
   return "\n" + table.text("  ") + more_rows(result.spectrometer.size());
 }
 
+double length(const Vec3& v) {
+  return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
+}
+
+/// Many directions: the span of |C| says more than the first rows.
+std::string force_span(const Result& result) {
+  double low = length(result.pressure.front().coefficient_m2.value), high = low;
+  for (const auto& p : result.pressure) {
+    low = std::min(low, length(p.coefficient_m2.value));
+    high = std::max(high, length(p.coefficient_m2.value));
+  }
+  return fmt::format("\n  pressure  {} directions: |C| = |F| c / E from {:.6g} to {:.6g} m²\n", result.pressure.size(),
+                     low, high);
+}
+
 std::string forces(const Result& result) {
+  constexpr double kSolarPressure = 1361.0 / 299792458.0;  // N/m²
   if (result.pressure.empty()) return "";
+  if (result.pressure.size() > kMostRows / 3) return force_span(result);
   Columns table;
   table.row({"pressure", "", "x", "y", "z"});
-  const auto three = [](const VectorEstimate& v, int axis) {
-    return format_with_error(v.value[axis], v.standard_error[axis]);
+  const auto three = [&](const std::string& name, const char* what, const VectorEstimate& v, double scale) {
+    const auto cell = [&](int axis) {
+      return format_with_error(v.value[axis] * scale, v.standard_error[axis] * scale);
+    };
+    table.row({name, what, cell(0), cell(1), cell(2)});
   };
-  for (std::size_t i = 0; i < std::min(result.pressure.size(), kMostRows / 2); ++i) {
-    const auto& p = result.pressure[i];
-    const auto& c = p.coefficient_m2;
-    const auto& t = p.torque_coefficient_m3;
-    table.row(
-        {member(p.key, result.orientations.size()), "force coefficient (m²)", three(c, 0), three(c, 1), three(c, 2)});
-    table.row({"", "torque coefficient (m³)", three(t, 0), three(t, 1), three(t, 2)});
+  for (const auto& p : result.pressure) {
+    three(member(p.key, result.orientations.size()), "force coefficient C (m²)", p.coefficient_m2, 1.0);
+    three("", "torque coefficient (m³)", p.torque_coefficient_m3, 1.0);
+    three("", "force at 1361 W/m² (N)", p.coefficient_m2, kSolarPressure);
   }
-  return "\n" + table.text("  ") +
-         (result.pressure.size() > kMostRows / 2 ? more_rows(kMostRows + result.pressure.size() - kMostRows / 2) : "");
+  return "\n" + table.text("  ");
 }
 
 std::string file_list(const std::vector<std::string>& files) {
@@ -256,10 +272,10 @@ std::string closing_table(const Result& result, const Scene& scene, const std::s
                                                   : "n/a: " + reference->file + " has none of these totals"});
   }
   table.row({"digest", fmt::format("{:016x}", result.digest)});
-  Columns tail;
-  tail.row({"files", folder + "/: " + file_list(files)});
-  return table.text("  ") + (result.delay.size() > 1 ? many_pulses(result) : "") + bands(result) + forces(result) +
-         tail.text(result.delay.size() > 1 || !result.spectrometer.empty() || !result.pressure.empty() ? "\n  " : "  ");
+  const std::string more = (result.delay.size() > 1 ? many_pulses(result) : "") + bands(result) + forces(result);
+  const std::string list = folder + "/: " + file_list(files);
+  if (more.empty()) table.row({"files", list});
+  return table.text("  ") + (more.empty() ? "" : more + "\n  files  " + list + "\n");
 }
 
 }  // namespace clray::cli

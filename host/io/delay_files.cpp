@@ -152,11 +152,11 @@ double highest(const Curve& curve) {
 }
 
 /// Depth along the line of sight on the upper axis, where the round trip makes it half the delay.
-void depth_axis(Plot& plot, double per_second) {
+void depth_axis(Plot& plot, double per_second, double start, double end) {
   const double m_per_unit = 0.5 * kLightSpeed / per_second;
-  plot.line("set border 7");
-  plot.line("set link x2 via x*" + number(m_per_unit) + " inverse x/" + number(m_per_unit));
-  plot.line("set x2tics nomirror; set x2label 'depth away from the station (m)' offset 0,-0.4 textcolor '#555555'");
+  plot.line("set border 7; set xtics nomirror");
+  plot.line("set x2range [" + number(start * m_per_unit) + ":" + number(end * m_per_unit) + "]");
+  plot.line("set x2tics nomirror; set x2label 'depth away from the station (m)' offset 0,-0.5 textcolor '#555555'");
 }
 
 bool monostatic(const Writer& writer, const ResultKey& key) {
@@ -202,31 +202,29 @@ void pulse_picture(Writer& writer, const DelayResult& delay, const std::string& 
   pulse_data(plot, curve);
   const bool any_unresolved = bound_data(plot, curve);
   const double top = highest(curve);
-  plot.line("set multiplot");
-  plot.line("set title " + gnuplot_text(writer.title("delay", delay.key)) + " font ',18' offset 0,0.6");
-  plot.line("set label 1 " +
-            gnuplot_text("A = " + format_with_error(a.value, a.standard_error) + " m²/sr    σ = 4πA = " +
-                         format_with_error(4.0 * kPi * a.value, 4.0 * kPi * a.standard_error) + " m²") +
-            " at graph 0.015, graph 0.95 textcolor '#222222' front");
+  const auto estimate = [&](const Estimate& e, double scale) {
+    return format_with_error(e.value * scale, e.standard_error * scale);
+  };
+  plot.line("set label 1 " + gnuplot_text(writer.title("delay", delay.key)) +
+            " at screen 0.54, 0.97 center font ',19' textcolor '#000000'");
   plot.line("set label 2 " +
-            gnuplot_text("mean delay " +
-                         format_with_error(delay.mean_delay_s.value * unit.per_second,
-                                           delay.mean_delay_s.standard_error * unit.per_second) +
-                         " " + unit.name + "    rms width " +
-                         format_with_error(delay.rms_width_s.value * unit.per_second,
-                                           delay.rms_width_s.standard_error * unit.per_second) +
-                         " " + unit.name) +
-            " at graph 0.015, graph 0.895 textcolor '#222222' front");
+            gnuplot_text("A = " + estimate(a, 1.0) + " m²/sr     σ = 4πA = " + estimate(a, 4.0 * kPi) +
+                         " m²     mean " + estimate(delay.mean_delay_s, unit.per_second) + " " + unit.name +
+                         "     rms width " + estimate(delay.rms_width_s, unit.per_second) + " " + unit.name) +
+            " at screen 0.54, 0.925 center font ',14' textcolor '#333333'");
   plot.line("set xlabel 'delay after a path by way of the reference point (" + std::string(unit.name) + ")'");
   plot.line("set ylabel 'A(t)  (m² sr⁻¹ " + std::string(unit.name) + "⁻¹)' offset -0.5,0");
-  if (monostatic(writer, delay.key)) depth_axis(plot, unit.per_second);
   const double end = curve.start + static_cast<double>(curve.value.size()) * curve.width;
   if (end > curve.start) plot.line("set xrange [" + number(curve.start) + ":" + number(end) + "]");
-  // A third of the height stays free for the words.
-  plot.line(top > 0.0 ? "set yrange [0:" + number(top * 1.3) + "]" : "set yrange [0:1]");
-  if (!(top > 0.0))
+  const bool depths = monostatic(writer, delay.key) && end > curve.start;
+  if (depths) depth_axis(plot, unit.per_second, curve.start, end);
+  // Room above the curve for the key.
+  plot.line(top > 0.0 ? "set yrange [0:" + number(top * 1.16) + "]" : "set yrange [0:1]");
+  if (!(top > 0.0)) {
     plot.line("set label 3 'nothing came back' at graph 0.5, graph 0.5 center font ',20' textcolor '#888888'");
-  plot.line("set tmargin at screen " + std::string(monostatic(writer, delay.key) ? "0.855" : "0.92"));
+  }
+  plot.line("set key top center horizontal width 2 height 0.2");
+  plot.line("set tmargin at screen " + std::string(depths ? "0.82" : "0.885"));
   plot.line("set boxwidth " + number(curve.width) + "; set style fill solid 1.0 noborder");
   std::string command = "plot ";
   if (any_unresolved)
@@ -235,7 +233,6 @@ void pulse_picture(Writer& writer, const DelayResult& delay, const std::string& 
       "$pulse using 1:3:4 with filledcurves linecolor '#a9c9ea' title '± 1 standard error', "
       "$pulse using 1:2 with lines linewidth 1.4 linecolor '#0b4f94' title 'A(t)'";
   plot.line(command);
-  plot.line("unset multiplot");
   writer.draw(plot, name);
 }
 

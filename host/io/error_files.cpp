@@ -59,13 +59,34 @@ bool drawable(double error) {
   return std::isfinite(error) && error > 0.0;
 }
 
+/// "[low:high]" around the values with some air, in a logarithmic sense; at least half a decade.
+std::string log_range(double low, double high) {
+  const double air = high / low < 3.0 ? 2.0 : 1.4;
+  return "[" + number(low / air) + ":" + number(high * air) + "]";
+}
+
+/// Extremes of a coordinate over several series.
+template <class Coordinate>
+std::string log_range(const std::vector<const Series*>& all, Coordinate coordinate) {
+  double low = std::numeric_limits<double>::infinity(), high = 0.0;
+  for (const auto* series : all) {
+    for (const auto& point : series->points) {
+      const double x = coordinate(point);
+      if (!(x > 0.0)) continue;
+      low = std::min(low, x);
+      high = std::max(high, x);
+    }
+  }
+  return high > 0.0 ? log_range(low, high) : "[1:10]";
+}
+
 /// One panel: x is column 1 (rays) or 2 (seconds). The guide passes through the first claimed point.
 void panel(Plot& plot, const std::string& column, const std::string& xlabel, Place guide, bool confirmed, bool truth) {
   plot.line("set xlabel " + gnuplot_text(xlabel));
   std::string command = "plot ";
   if (guide.x > 0.0 && guide.error > 0.0) {
     command += number(guide.error) + "*sqrt(" + number(guide.x) +
-               "/x) with lines dashtype 2 linewidth 1 linecolor '#999999' title 'falling as N^{-½}' enhanced, ";
+               "/x) with lines dashtype 2 linewidth 1 linecolor '#999999' title 'falling as N^{-1/2}', ";
   }
   command += "$claimed using " + column +
              ":3 with linespoints pointtype 7 pointsize 1.1 linecolor '#0b4f94' "
@@ -114,15 +135,19 @@ void error_picture(Writer& writer, const std::vector<double>& truth) {
   true_error.data(plot, "true");
   const auto& first = claimed.points.empty() ? confirmed.points.front() : claimed.points.front();
   plot.line("set multiplot layout 1,2 title " + title + " font ',18'");
-  plot.line("set logscale xy; set format y '10^{%L}' ; set format x '10^{%L}'; set xtics enhanced; set ytics enhanced");
+  plot.line("set logscale xy; set format y '10^{%L}' ; set format x '10^{%L}'");
   plot.line("set grid xtics ytics mxtics mytics linecolor '#cccccc' linewidth 0.6, linecolor '#eeeeee' linewidth 0.4");
-  plot.line("set key bottom left; set ylabel 'error relative to the value'; set tmargin at screen 0.9");
-  plot.line("set offsets graph 0.05, graph 0.05, graph 0.05, graph 0.05");
+  plot.line("set key bottom left Left reverse; set ylabel 'error relative to the value'; set tmargin at screen 0.9");
   const bool any_confirmed = !confirmed.points.empty(), any_truth = !true_error.points.empty();
-  plot.line("set lmargin at screen 0.09; set rmargin at screen 0.51");
+  const std::vector<const Series*> all{&claimed, &confirmed, &true_error};
+  const auto rays = [](const ErrorPoint& p) { return static_cast<double>(p.rays); };
+  const auto seconds = [](const ErrorPoint& p) { return p.seconds; };
+  plot.line("set yrange " + log_range(all, [](const ErrorPoint& p) { return p.relative_standard_error; }));
+  plot.line("set lmargin at screen 0.10; set rmargin at screen 0.51; set xrange " + log_range(all, rays));
   panel(plot, "1", "rays per orientation", {static_cast<double>(first.rays), first.relative_standard_error},
         any_confirmed, any_truth);
-  plot.line("set lmargin at screen 0.57; set rmargin at screen 0.98; unset ylabel; unset key");
+  plot.line("set lmargin at screen 0.575; set rmargin at screen 0.985; unset ylabel; unset key; set format y ''");
+  plot.line("set xrange " + log_range(all, seconds));
   panel(plot, "2", "seconds of tracing", {first.seconds, first.relative_standard_error}, any_confirmed, any_truth);
   plot.line("unset multiplot");
   writer.draw(plot, name);

@@ -24,17 +24,18 @@ namespace clray::io {
 std::string gnuplot_text(std::string_view text) {
   std::string literal = "'";
   for (const char c : one_line(text)) literal.append(c == '\'' ? 2 : 1, c);
-  return literal + "'";
+  // "noenhanced" after a literal keeps '_' and '^' of users' names from becoming subscripts.
+  return literal + "' noenhanced";
 }
 
 Plot::Plot(const std::string& file, int width, int height) : file_(file) {
   const std::string size = std::to_string(width) + "," + std::to_string(height);
   line("set encoding utf8");
-  line("if (strstrt(GPVAL_TERMINALS, ' pngcairo ')) { set terminal pngcairo noenhanced size " + size +
+  line("if (strstrt(GPVAL_TERMINALS, ' pngcairo ')) { set terminal pngcairo enhanced size " + size +
        " font 'DejaVu Sans,15' linewidth 1.5 background '#ffffff' }"
-       " else { set terminal png noenhanced truecolor size " +
+       " else { set terminal png enhanced truecolor size " +
        size + " font 'DejaVu Sans,13' background '#ffffff' }");
-  line("set output " + gnuplot_text(file));
+  line("set output '" + file + "'");
   line("set border 3 linecolor '#444444' linewidth 0.8");
   line("set tics nomirror textcolor '#222222'");
   line("set grid back linecolor '#dddddd' linetype 1 linewidth 0.6");

@@ -7,7 +7,7 @@
 
 namespace clray::io {
 
-/// Text as a gnuplot string literal, on one line.
+/// Text as a gnuplot string literal, on one line, to be shown as it is.
 std::string gnuplot_text(std::string_view text);
 
 /// A gnuplot script in the making.

@@ -119,9 +119,10 @@ void time_picture(Writer& writer, const Group& group, const std::string& stem) {
   writer.draw(plot, name);
 }
 
-bool directions_differ(const Group& group) {
-  return std::any_of(group.begin(), group.end(),
-                     [&](const auto* record) { return !(record->sun == group.front()->sun); });
+/// A grid of Sun directions belongs to one instant; a motion has one direction per orientation.
+bool one_instant(const Group& group) {
+  return std::all_of(group.begin(), group.end(),
+                     [&](const auto* record) { return record->key.orientation == group.front()->key.orientation; });
 }
 
 }  // namespace
@@ -131,7 +132,7 @@ void write_pressure(Writer& writer) {
     const std::string stem = writer.stem("pressure", group.front()->key);
     pressure_table(writer, group, stem);
     if (!writer.options.plots || group.size() < 2) continue;
-    if (writer.scene.motion || !directions_differ(group)) {
+    if (writer.scene.motion && !one_instant(group)) {
       time_picture(writer, group, stem);
     } else {
       map_picture(writer, group, stem);
