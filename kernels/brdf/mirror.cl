@@ -8,7 +8,7 @@
 CLRAY_FN f64 brdf_mirror_fresnel(f64 eta, f64 k, f64 mu) {
   const f64 mu2 = mu * mu, sin2 = (1.0 - mu) * (1.0 + mu);
   // a² - b² and 2ab of the refracted wave's normal component a + ib
-  const f64 difference = fma(-k, k, fma(eta, eta, -sin2)), product = 2.0 * eta * k;
+  const f64 difference = fma(mu, mu, fma(-k, k, (eta - 1.0) * (eta + 1.0))), product = 2.0 * eta * k;
   const f64 size = sqrt(fma(difference, difference, product * product));
   const f64 a2 = difference > 0.0 ? 0.5 * (size + difference)
                                   : (size > difference ? 0.5 * product * product / (size - difference) : 0.0);
