@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// CRD v2 full-rate writer; see crd.hpp. A simulated station has no system delay and no atmosphere: those are written
+// as the true zeros they are, all that nobody knows as "na".
+#include "slr/crd.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace clray::slr {
+
+namespace {
+
+std::string calendar(const Epoch& epoch) {
+  const Date d = date_of(epoch);
+  return fmt::format("{:04} {:02} {:02} {:02} {:02} {:02}", d.year, d.month, d.day, d.hour, d.minute, d.second);
+}
+
+std::string value(double number, int decimals) {
+  return std::isfinite(number) ? fmt::format("{:.{}f}", number, decimals) : "na";
+}
+
+}  // namespace
+
+CrdWriter::CrdWriter(const std::string& path, const CrdHeader& h, const CrdSupplement& s) : file_(path) {
+  const Date made = date_of(h.produced);
+  file_.text(fmt::format("H1 CRD  2 {:04} {:02} {:02} {:02}\n", made.year, made.month, made.day, made.hour));
+  // Time scale 7: UTC (BIH). Simulated clocks have no error.
+  file_.text(fmt::format("H2 {} {} {} {} 7 {}\n", h.station, h.pad, h.system, h.occupancy, h.network));
+  file_.text(
+      fmt::format("H3 {} {} {} {} 0 {} {}\n", h.target, h.cospar, h.sic, h.norad, h.target_class, h.target_location));
+  // Full rate, first release; not corrected for refraction, centre of mass, amplitude; system delay applied (it is
+  // zero); two-way ranges; data quality undefined.
+  file_.text(fmt::format("H4 0 {} {} 0 0 0 0 1 0 2 0\n", calendar(h.start), calendar(h.stop)));
+  file_.text(fmt::format("H5 {} {} {} {} {}\n", h.prediction_type, h.prediction_year, h.prediction_date,
+                         h.prediction_source, h.prediction_sequence));
+  configuration(h);
+  supplement(s);
+  file_.text("20 ").decimal(s.epoch_ps, 12).text(" na na na 0\n");
+  file_.text("40 ").decimal(s.epoch_ps, 12).text(" 0 sys na na na 0.0 0.0 na na na na 0 0 0 0 na\n");
+}
+
+void CrdWriter::configuration(const CrdHeader& h) {
+  file_.text("00 simulated by clray " CLRAY_VERSION "\n");
+  file_.text(fmt::format("C0 0 {} sys laser detector timing\n", value(h.wavelength_nm, 3)));
+  file_.text(fmt::format("C1 0 laser simulated {} {} {} {} {} 1\n", value(h.wavelength_nm, 3), value(h.rate_Hz, 3),
+                         value(h.pulse_energy_mJ, 3), value(h.pulse_fwhm_ps, 3), value(h.divergence_arcsec, 3)));
+  file_.text(fmt::format("C2 0 detector single-photon {} {} na {} na na na na na na na na na\n",
+                         value(h.wavelength_nm, 3), value(h.quantum_efficiency_percent, 2), value(h.dark_kHz, 3)));
+  file_.text("C3 0 timing simulated simulated simulated na 0.0\n");
+}
+
+void CrdWriter::supplement(const CrdSupplement& s) {
+  file_.text("12 ").decimal(s.epoch_ps, 12).text(fmt::format(" sys 0.0 na na 0.0 {}\n", value(s.range_rate_m_s, 6)));
+}
+
+void CrdWriter::range(const CrdRange& r) {
+  static const char* const kTail[] = {" sys 2 0 0 0 na na", " sys 2 1 0 0 na na", " sys 2 2 0 0 na na"};
+  file_.text("10 ").decimal(r.epoch_ps, 12).text(" ").decimal(r.flight_ps, 12).text(kTail[r.filter_flag]).end_line();
+}
+
+void CrdWriter::close() {
+  file_.text("H8\nH9\n");
+  file_.close();
+}
+
+}  // namespace clray::slr

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// Buffered text; see text_file.hpp.
+#include "slr/text_file.hpp"
+
+#include <cerrno>
+#include <cstring>
+
+#include "clray/error.hpp"
+
+namespace clray::slr {
+
+namespace {
+
+constexpr std::size_t kPiece = 1u << 18;
+
+[[noreturn]] void fail(const std::string& path) {
+  throw Error(ErrorCode::output, std::string("cannot be written: ") + std::strerror(errno), path);
+}
+
+}  // namespace
+
+TextFile::TextFile(const std::string& path) : path_(path), file_(std::fopen(path.c_str(), "wb")) {
+  if (!file_) fail(path_);
+  buffer_.reserve(kPiece + 512);
+}
+
+TextFile::~TextFile() {
+  if (file_) std::fclose(file_);
+}
+
+TextFile& TextFile::text(std::string_view text) {
+  buffer_.append(text);
+  return *this;
+}
+
+TextFile& TextFile::decimal(std::int64_t value, int decimals) {
+  char digits[24];
+  int at = sizeof digits;
+  std::uint64_t left = value < 0 ? 0 - static_cast<std::uint64_t>(value) : static_cast<std::uint64_t>(value);
+  for (int k = 0; left > 0 || k <= decimals; ++k) {
+    if (k == decimals) digits[--at] = '.';
+    digits[--at] = static_cast<char>('0' + left % 10);
+    left /= 10;
+  }
+  if (value < 0) digits[--at] = '-';
+  buffer_.append(digits + at, sizeof digits - static_cast<std::size_t>(at));
+  return *this;
+}
+
+TextFile& TextFile::end_line() {
+  buffer_ += '\n';
+  if (buffer_.size() >= kPiece) flush();
+  return *this;
+}
+
+void TextFile::flush() {
+  if (std::fwrite(buffer_.data(), 1, buffer_.size(), file_) != buffer_.size()) fail(path_);
+  buffer_.clear();
+}
+
+void TextFile::close() {
+  flush();
+  std::FILE* file = file_;
+  file_ = nullptr;
+  if (std::fclose(file) != 0) fail(path_);
+}
+
+}  // namespace clray::slr

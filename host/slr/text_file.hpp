@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// A text file written in large pieces, with numbers of fixed decimals from integers: a million rows in a fraction of
+// a second, the same digits everywhere.
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+#include <string>
+#include <string_view>
+
+namespace clray::slr {
+
+class TextFile {
+ public:
+  /// Throws Error(output) where the file cannot be made.
+  explicit TextFile(const std::string& path);
+  ~TextFile();
+  TextFile(const TextFile&) = delete;
+  TextFile& operator=(const TextFile&) = delete;
+
+  TextFile& text(std::string_view text);
+  /// `value`·10^-decimals, decimals 1 … 18.
+  TextFile& decimal(std::int64_t value, int decimals);
+  TextFile& end_line();
+
+  /// Throws Error(output) where anything could not be written.
+  void close();
+
+ private:
+  void flush();
+
+  std::string path_, buffer_;
+  std::FILE* file_ = nullptr;
+};
+
+}  // namespace clray::slr

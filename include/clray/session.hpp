@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// Laser ranging: from the delay camera's A(t) to what a station records (PHYSICS section 5): expected photon rates,
+// the link budget, and sessions of single-photon shots as tables, a picture and ILRS CRD v2 full-rate data.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "clray/result.hpp"
+
+namespace clray {
+
+/// How to run a session.
+struct SessionOptions {
+  bool plots = true;
+  Device* device = nullptr;           ///< samples the shots there; else on this machine's cores. Same bits either way.
+  int threads = 0;                    ///< of the host; 0: one per core
+  std::uint64_t first_shot = 0;       ///< redo a part alone: from this shot on
+  std::uint64_t shots = 0;            ///< so many shots; 0: to the end of the motion
+  std::string stem = "observations";  ///< of the file names
+  /// Which delay results: names as in ResultKey. All empty: the first group seen from the source.
+  std::string detector, observer, variant;
+  std::vector<std::string>* warnings = nullptr;  ///< receives what went wrong without harm
+};
+
+/// Samples all shots of the session and writes `<stem>.csv`, `<stem>.crd` and `<stem>.png` into the existing `folder`.
+/// Needs scene.station, scene.motion and a laser; the seed is result.seed. Memory does not grow with the shots.
+/// Throws Error(input) for a station that makes no sense, Error(output) where a file cannot be written.
+SessionSummary write_session(const Result& result, const Scene& scene, const std::string& folder,
+                             const SessionOptions& options = {});
+
+/// The same for WriteOptions::more: one session for each group of delay results seen from the source (several
+/// variants or detectors have their names in the file names), with the link budget in the summary entry "session".
+MoreFiles session_files(const Result& result, const Scene& scene, const std::string& folder,
+                        const SessionOptions& options = {});
+
+/// Whether a scene makes a session: it has a station, a motion, a laser and an observer at the source.
+bool has_session(const Scene& scene);
+
+/// Expected signal photons per ns in each bin of `delay` at that range, transmit pulse included; what the pulse
+/// smears out of the window is left out. Throws Error(input) for a station or range that makes no sense.
+std::vector<double> photons_per_ns(const DelayResult& delay, const Station& station, double range_m,
+                                   double wavelength_nm = 532.0);
+
+/// One-way distance at the session's start (fixed, or from its table or prediction). Throws Error(input).
+double session_range_m(const Scene& scene);
+
+/// The link budget for a person: every factor with its value, unit, default and range, and the photons per pulse from
+/// `cross_section_m2`, at `range_m` (station.range_m if 0).
+std::string link_budget_table(const Station& station, double wavelength_nm, double cross_section_m2,
+                              double range_m = 0.0);
+
+/// Reads an ILRS CPF v2 prediction strictly and says what is in it (target, epochs, records).
+/// Throws Error(input) with file:line.
+std::string describe_prediction(const std::string& cpf_file);
+
+}  // namespace clray
