@@ -36,10 +36,10 @@ static void bvh_axis(f64 o, f64 d, u32 axis, f32 *near, f32 *far, f32 *inv, u32 
 
 /// Starts at `root` with the ray o + t·d (d a unit vector) in a frame whose boxes are (x − centre)·scale.
 static void bvh_begin(BvhWalk *walk, u32 root, vec3 o, vec3 d, vec3 centre, f64 scale) {
-  const vec3 local = v3_scale(scale, v3_sub(o, centre));
-  bvh_axis(local.x, d.x, 0u, &walk->near_x, &walk->far_x, &walk->inv_x, &walk->row_x);
-  bvh_axis(local.y, d.y, 1u, &walk->near_y, &walk->far_y, &walk->inv_y, &walk->row_y);
-  bvh_axis(local.z, d.z, 2u, &walk->near_z, &walk->far_z, &walk->inv_z, &walk->row_z);
+  const vec3 from = v3_scale(scale, v3_sub(o, centre));
+  bvh_axis(from.x, d.x, 0u, &walk->near_x, &walk->far_x, &walk->inv_x, &walk->row_x);
+  bvh_axis(from.y, d.y, 1u, &walk->near_y, &walk->far_y, &walk->inv_y, &walk->row_y);
+  bvh_axis(from.z, d.z, 2u, &walk->near_z, &walk->far_z, &walk->inv_z, &walk->row_z);
   walk->scale = scale;
   walk->stack[0] = root << 4;
   walk->stack_t[0] = 0.0f;

@@ -80,15 +80,15 @@ static void test_primitive(const Buffers *g, const LocalRay *ray, u32 index, u32
 }
 
 /// Walks one tree; with `any` it stops at the first hit of all.
-static void intersect_tree(const Buffers *g, const Ray *ray, const LocalRay *local, vec3 centre, f64 scale, u32 root,
+static void intersect_tree(const Buffers *g, const Ray *ray, const LocalRay *placed, vec3 centre, f64 scale, u32 root,
                            u32 instance, u32 any, Hit *hit) {
   BvhWalk walk;
   u32 first, count;
-  bvh_begin(&walk, root, local->o, local->d, centre, scale);
+  bvh_begin(&walk, root, placed->o, placed->d, centre, scale);
   while (bvh_next(&walk, g->nodes, hit->t, &first, &count, g->counters)) {
     for (u32 k = first; k < first + count; ++k) {
       if (k == ray->skip_primitive && instance == ray->skip_instance) continue;
-      test_primitive(g, local, k, instance, hit);
+      test_primitive(g, placed, k, instance, hit);
     }
     if (any && hit->primitive != 0xffffffffu) return;
   }
@@ -109,15 +109,15 @@ static i32 intersect(const Buffers *g, const Ray *ray, u32 view, u32 any, Hit *h
   while (bvh_next(&walk, g->nodes, hit->t, &first, &count, g->counters)) {
     for (u32 k = first; k < first + count; ++k) {
       const __global ClrayInstance *instance = g->instances + k;
-      const LocalRay local = instance->moved ? local_ray(to_instance(instance, ray->o), rotate(instance->rotation, ray->d))
+      const LocalRay placed = instance->moved ? local_ray(to_instance(instance, ray->o), rotate(instance->rotation, ray->d))
                                              : local_ray(ray->o, ray->d);
-      intersect_tree(g, ray, &local, v3_load(instance->box_centre), instance->box_scale, instance->root, k, any, hit);
+      intersect_tree(g, ray, &placed, v3_load(instance->box_centre), instance->box_scale, instance->root, k, any, hit);
       if (any && hit->primitive != 0xffffffffu) return 1;
     }
   }
 #else
-  const LocalRay local = local_ray(ray->o, ray->d);
-  intersect_tree(g, ray, &local, centre, from->box_scale, from->root, 0u, any, hit);
+  const LocalRay placed = local_ray(ray->o, ray->d);
+  intersect_tree(g, ray, &placed, centre, from->box_scale, from->root, 0u, any, hit);
 #endif
   return hit->primitive != 0xffffffffu;
 }
