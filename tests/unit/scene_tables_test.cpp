@@ -3,6 +3,8 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <fstream>
+#include <sstream>
 
 #include "clray/error.hpp"
 #include "clray/scene.hpp"
@@ -100,5 +102,22 @@ TEST_CASE("tables: the listing names every row and key") {
     FAIL("expected an error");
   } catch (const Error& e) {
     CHECK(e.code() == ErrorCode::usage);
+  }
+}
+
+TEST_CASE("tables: docs/scene-file.md names every row and key") {
+  std::stringstream text;
+  text << std::ifstream(std::string(CLRAY_SOURCE_DIR) + "/docs/scene-file.md").rdbuf();
+  const std::string document = text.str();
+  REQUIRE(document.size() > 1000);
+  for (const std::string kind : {"brdf", "shape", "detector"}) {
+    for (const TableRow& row : table(kind)) {
+      INFO(row.name);
+      CHECK(document.find("`" + row.name + "`") != std::string::npos);
+      for (const TableKey& key : row.keys) {
+        INFO(key.name);
+        CHECK(document.find("`" + key.name + "`") != std::string::npos);
+      }
+    }
   }
 }
