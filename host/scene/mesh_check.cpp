@@ -64,8 +64,14 @@ double coordinate(TextCursor& text, const char* what) {
 
 constexpr std::array<const char*, 3> kAxes = {"x of a vertex", "y of a vertex", "z of a vertex"};
 
+void append_little(std::string& bytes, std::uint32_t value) {
+  for (int i = 0; i < 4; ++i) bytes += static_cast<char>(value >> 8 * i & 0xff);
+}
+
 FormatClaim check_stl_ascii(const std::string& content, const std::string& path) {
   FormatClaim claim;
+  claim.binary = true;
+  claim.plain.assign(kStlHeader, '\0');
   TextCursor text(content, path);
   expect(text, "solid");
   text.next_line();
@@ -78,18 +84,25 @@ FormatClaim check_stl_ascii(const std::string& content, const std::string& path)
       open = true;
     } else if (word == "facet") {
       if (!open) text.fail("a facet after endsolid; solid was expected");
-      text.next_line();  // the normal is not used
+      text.next_line();
+      claim.plain.append(12, '\0');  // the normal is not used
       expect(text, "outer loop");
       text.next_line();
       for (int corner = 0; corner < 3; ++corner) {
         expect(text, "vertex");
-        for (const char* what : kAxes) coordinate(text, what);
+        for (const char* what : kAxes) {
+          const auto value = static_cast<float>(coordinate(text, what));
+          std::uint32_t bits = 0;
+          std::memcpy(&bits, &value, sizeof bits);
+          append_little(claim.plain, bits);
+        }
         if (text.more_on_line()) text.fail("more than three coordinates; the end of the line was expected");
         text.next_line();
       }
       expect(text, "endloop");
       text.next_line();
       expect(text, "endfacet");
+      claim.plain.append(2, '\0');
       ++claim.faces;
     } else {
       text.fail(quote_word(word) + "; 'facet' or 'endsolid' was expected");
@@ -97,6 +110,10 @@ FormatClaim check_stl_ascii(const std::string& content, const std::string& path)
     text.next_line();
   }
   if (open) text.fail("the file ends where 'endsolid' was expected");
+  if (claim.faces > 0xffffffffu) text.fail("more than 2^32 facets; fewer were expected");
+  std::string count;
+  append_little(count, static_cast<std::uint32_t>(claim.faces));
+  claim.plain.replace(80, 4, count);
   return claim;
 }
 

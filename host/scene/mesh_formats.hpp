@@ -18,8 +18,9 @@ struct FormatClaim {
   std::uint64_t faces = 0;
   bool binary = false;
   std::vector<Vec3> points;  ///< PLY and OFF: the vertices in double, where OpenMesh reads float
-  /// PLY and OFF: the same mesh written plainly, which is what OpenMesh gets to read: its readers lose their place
-  /// at comments, colours, properties before the corners, and numbers of another type than they want.
+  /// PLY, OFF and text STL: the same mesh written plainly, which is what OpenMesh gets to read: its readers lose
+  /// their place at comments, colours, properties before the corners and numbers of another type than they want,
+  /// and its text STL reader takes the decimal sign from the global locale. Text STL becomes binary, in float.
   std::string plain;
 };
 

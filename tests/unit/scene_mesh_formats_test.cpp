@@ -3,6 +3,7 @@
 // would accept silently, refused.
 #include <cstring>
 #include <functional>
+#include <locale>
 
 #include "scene_mesh_files.hpp"
 
@@ -165,6 +166,20 @@ TEST_CASE("OFF with comments, colours, CRLF and counts on the first line") {
   check_box(*load_text("# first\n\nOFF 8 6 0\n" + points_text() + quads_text(), "a.off"), 6, kDouble);
   check_box(*load_text("OFF\n8 6\n" + points_text() + quads_text("", " 255 0 0\n"), "a.off"), 6, kDouble);
   check_box(*load_text("COFF\n8 6 0\n" + points_text(" 255 0 0 255\n") + quads_text(), "a.off"), 6, kDouble);
+}
+
+TEST_CASE("a locale with a decimal comma changes nothing in PLY, STL and OFF") {
+  struct CommaPoint : std::numpunct<char> {
+    char do_decimal_point() const override { return ','; }
+    char do_thousands_sep() const override { return '.'; }
+    std::string do_grouping() const override { return "\3"; }
+  };
+  const std::string stl = stl_text();
+  const std::locale before = std::locale::global(std::locale(std::locale::classic(), new CommaPoint));
+  check_box(*load_text(kPlyText, "a.ply"), 6, kDouble);
+  check_box(*load_text(kOff, "a.off"), 6, kDouble);
+  check_box(*load_text(stl, "a.stl"), 12, kFloat);
+  std::locale::global(before);
 }
 
 TEST_CASE("duplicate, flipped and degenerate faces of PLY, STL and OFF are kept") {
