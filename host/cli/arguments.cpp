@@ -29,7 +29,7 @@ constexpr const char* kFooter =
 
 /// What the options write into before they are parsed as values.
 struct Texts {
-  std::string rays, target, time, source, observer, bins, bounces, seed, unit, group, slice, sampler;
+  std::optional<std::string> rays, target, time, source, observer, bins, bounces, seed, unit, group, slice, sampler;
 };
 
 std::size_t edit_distance(const std::string& a, const std::string& b) {
@@ -39,7 +39,7 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
     std::size_t diagonal = row[0];
     row[0] = i + 1;
     for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t next = std::min({row[j], row[j + 1], diagonal - (a[i] == b[j] ? 1 : 0)}) + 1;
+      const std::size_t next = std::min({row[j] + 1, row[j + 1] + 1, diagonal + (a[i] == b[j] ? 0 : 1)});
       diagonal = row[j + 1];
       row[j + 1] = next;
     }
@@ -84,9 +84,12 @@ std::string wrapped(const std::string& text) {
   return lines;
 }
 
-CLI::Option* text_option(CLI::App& app, const std::string& name, std::string& value, const std::string& value_name,
-                         const std::string& help, const std::string& group) {
-  return app.add_option(name, value, wrapped(help))->type_name(value_name)->group(group)->expected(1);
+/// An option with one value, kept as text; `value` is a string or an optional one.
+template <class Text>
+void text_option(CLI::App& app, const std::string& name, Text& value, const std::string& value_name,
+                 const std::string& help, const std::string& group) {
+  const auto keep = [&value](const std::string& text) { value = text; };
+  app.add_option_function<std::string>(name, keep, wrapped(help))->type_name(value_name)->group(group)->expected(1);
 }
 
 void add_options(CLI::App& app, Arguments& a, Texts& t) {
@@ -162,25 +165,31 @@ int small_count(const std::string& text, const std::string& option, std::uint64_
   return static_cast<int>(value);
 }
 
+/// What check_scene() allows.
+constexpr std::uint64_t kMostRays = std::uint64_t{1} << 40;
+
 void parse_values(Arguments& a, const Texts& t) {
-  if (!t.rays.empty()) a.rays = parse_count(t.rays, "--rays");
-  if (!t.target.empty()) a.target_error_percent = parse_percent(t.target, "--target-error");
-  if (!t.time.empty()) a.time_limit_s = parse_duration(t.time, "--time-limit");
-  if (!t.bins.empty()) a.scene_options.bins = small_count(t.bins, "--bins", 10000000);
-  if (!t.bounces.empty()) a.max_bounces = small_count(t.bounces, "--max-bounces", 64);
-  if (!t.group.empty()) a.work_group = small_count(t.group, "--work-group", 1024);
-  if (!t.slice.empty()) a.slice_points = parse_count(t.slice, "--slice-points");
-  if (!t.seed.empty()) a.seed = t.seed == "0" ? 0 : parse_count(t.seed, "--seed");
-  if (!t.unit.empty()) a.scene_options.length_unit_m = parse_length_unit(t.unit, "--length-unit");
-  if (!t.source.empty()) a.scene_options.source = parse_direction(t.source, "--source");
-  if (t.observer == "source") {
-    a.scene_options.observer_at_source = true;
-  } else if (!t.observer.empty()) {
-    a.scene_options.observer = parse_direction(t.observer, "--observer");
+  if (t.rays) {
+    a.rays = parse_count(*t.rays, "--rays");
+    if (*a.rays > kMostRays) throw Error(ErrorCode::usage, "'" + *t.rays + "' is too many; at most 2^40", "--rays");
   }
-  if (!t.sampler.empty()) {
+  if (t.target) a.target_error_percent = parse_percent(*t.target, "--target-error");
+  if (t.time) a.time_limit_s = parse_duration(*t.time, "--time-limit");
+  if (t.bins) a.scene_options.bins = small_count(*t.bins, "--bins", 10000000);
+  if (t.bounces) a.max_bounces = small_count(*t.bounces, "--max-bounces", 64);
+  if (t.group) a.work_group = small_count(*t.group, "--work-group", 1024);
+  if (t.slice) a.slice_points = parse_count(*t.slice, "--slice-points");
+  if (t.seed) a.seed = t.seed == "0" ? 0 : parse_count(*t.seed, "--seed");
+  if (t.unit) a.scene_options.length_unit_m = parse_length_unit(*t.unit, "--length-unit");
+  if (t.source) a.scene_options.source = parse_direction(*t.source, "--source");
+  if (t.observer && *t.observer == "source") {
+    a.scene_options.observer_at_source = true;
+  } else if (t.observer) {
+    a.scene_options.observer = parse_direction(*t.observer, "--observer");
+  }
+  if (t.sampler) {
     if (t.sampler != "sobol" && t.sampler != "random") {
-      throw Error(ErrorCode::usage, "'" + t.sampler + "' is not a sampler; expected sobol or random", "--sampler");
+      throw Error(ErrorCode::usage, "'" + *t.sampler + "' is not a sampler; expected sobol or random", "--sampler");
     }
     a.sobol = t.sampler == "sobol";
   }

@@ -208,10 +208,10 @@ void pulse_picture(Writer& writer, const DelayResult& delay, const std::string& 
   plot.line("set label 1 " + gnuplot_text(writer.title("delay", delay.key)) +
             " at screen 0.54, 0.97 center font ',19' textcolor '#000000'");
   plot.line("set label 2 " +
-            gnuplot_text("A = " + estimate(a, 1.0) + " m²/sr     σ = 4πA = " + estimate(a, 4.0 * kPi) +
-                         " m²     mean " + estimate(delay.mean_delay_s, unit.per_second) + " " + unit.name +
-                         "     rms width " + estimate(delay.rms_width_s, unit.per_second) + " " + unit.name) +
-            " at screen 0.54, 0.925 center font ',14' textcolor '#333333'");
+            gnuplot_text("A = " + estimate(a, 1.0) + " m²/sr     σ = " + estimate(a, 4.0 * kPi) + " m²     mean " +
+                         estimate(delay.mean_delay_s, unit.per_second) + " " + unit.name + "     rms width " +
+                         estimate(delay.rms_width_s, unit.per_second) + " " + unit.name) +
+            " at screen 0.54, 0.925 center font ',13.5' textcolor '#333333'");
   plot.line("set xlabel 'delay after a path by way of the reference point (" + std::string(unit.name) + ")'");
   plot.line("set ylabel 'A(t)  (m² sr⁻¹ " + std::string(unit.name) + "⁻¹)' offset -0.5,0");
   const double end = curve.start + static_cast<double>(curve.value.size()) * curve.width;
@@ -223,12 +223,11 @@ void pulse_picture(Writer& writer, const DelayResult& delay, const std::string& 
   if (!(top > 0.0)) {
     plot.line("set label 3 'nothing came back' at graph 0.5, graph 0.5 center font ',20' textcolor '#888888'");
   }
-  plot.line("set key top center horizontal width 2 height 0.2");
+  plot.line("set key top center horizontal maxrows 1 Left reverse width -3 height 0.2 samplen 2 font ',13'");
   plot.line("set tmargin at screen " + std::string(depths ? "0.82" : "0.885"));
   plot.line("set boxwidth " + number(curve.width) + "; set style fill solid 1.0 noborder");
   std::string command = "plot ";
-  if (any_unresolved)
-    command += "$bound using 1:2 with boxes linecolor '#f3d9b8' title 'unresolved bins: 95 % upper bound', ";
+  if (any_unresolved) command += "$bound using 1:2 with boxes linecolor '#f3d9b8' title 'unresolved, 95 % bound', ";
   command +=
       "$pulse using 1:3:4 with filledcurves linecolor '#a9c9ea' title '± 1 standard error', "
       "$pulse using 1:2 with lines linewidth 1.4 linecolor '#0b4f94' title 'A(t)'";

@@ -65,9 +65,26 @@ std::string log_range(double low, double high) {
   return "[" + number(low / air) + ":" + number(high * air) + "]";
 }
 
-/// Extremes of a coordinate over several series.
+/// Labels at 1, 2, 5 times powers of ten: gnuplot's own would leave an axis of less than a decade bare.
+std::string log_tics(const std::string& axis, double low, double high) {
+  std::string tics;
+  const int first = static_cast<int>(std::floor(std::log10(low))) - 1,
+            last = static_cast<int>(std::ceil(std::log10(high)));
+  const bool sparse = high / low > 300.0;
+  for (int power = first; power <= last; ++power) {
+    for (const int mantissa : {1, 2, 5}) {
+      if (sparse && mantissa != 1) continue;
+      const std::string ten = "10^{" + std::to_string(power) + "}";
+      tics += (tics.empty() ? "'" : ", '") + (mantissa == 1 ? ten : std::to_string(mantissa) + "·" + ten) + "' " +
+              number(mantissa * std::pow(10.0, power));
+    }
+  }
+  return "set " + axis + "tics (" + tics + "); ";
+}
+
+/// Range and labels of an axis ("x" or "y") that shows a coordinate of several series.
 template <class Coordinate>
-std::string log_range(const std::vector<const Series*>& all, Coordinate coordinate) {
+std::string log_axis(const std::string& axis, const std::vector<const Series*>& all, Coordinate coordinate) {
   double low = std::numeric_limits<double>::infinity(), high = 0.0;
   for (const auto* series : all) {
     for (const auto& point : series->points) {
@@ -77,7 +94,8 @@ std::string log_range(const std::vector<const Series*>& all, Coordinate coordina
       high = std::max(high, x);
     }
   }
-  return high > 0.0 ? log_range(low, high) : "[1:10]";
+  if (!(high > 0.0)) low = 1.0, high = 10.0;
+  return log_tics(axis, low, high) + "set " + axis + "range " + log_range(low, high);
 }
 
 /// One panel: x is column 1 (rays) or 2 (seconds). The guide passes through the first claimed point.
@@ -135,19 +153,21 @@ void error_picture(Writer& writer, const std::vector<double>& truth) {
   true_error.data(plot, "true");
   const auto& first = claimed.points.empty() ? confirmed.points.front() : claimed.points.front();
   plot.line("set multiplot layout 1,2 title " + title + " font ',18'");
-  plot.line("set logscale xy; set format y '10^{%L}' ; set format x '10^{%L}'");
+  plot.line("set logscale xy");
   plot.line("set grid xtics ytics mxtics mytics linecolor '#cccccc' linewidth 0.6, linecolor '#eeeeee' linewidth 0.4");
-  plot.line("set key bottom left Left reverse; set ylabel 'error relative to the value'; set tmargin at screen 0.9");
+  plot.line(
+      "set key bottom left Left reverse; set ylabel 'error relative to the value' offset 1,0; set tmargin at screen "
+      "0.9");
   const bool any_confirmed = !confirmed.points.empty(), any_truth = !true_error.points.empty();
   const std::vector<const Series*> all{&claimed, &confirmed, &true_error};
   const auto rays = [](const ErrorPoint& p) { return static_cast<double>(p.rays); };
   const auto seconds = [](const ErrorPoint& p) { return p.seconds; };
-  plot.line("set yrange " + log_range(all, [](const ErrorPoint& p) { return p.relative_standard_error; }));
-  plot.line("set lmargin at screen 0.10; set rmargin at screen 0.51; set xrange " + log_range(all, rays));
+  plot.line(log_axis("y", all, [](const ErrorPoint& p) { return p.relative_standard_error; }));
+  plot.line("set lmargin at screen 0.12; set rmargin at screen 0.515; " + log_axis("x", all, rays));
   panel(plot, "1", "rays per orientation", {static_cast<double>(first.rays), first.relative_standard_error},
         any_confirmed, any_truth);
-  plot.line("set lmargin at screen 0.575; set rmargin at screen 0.985; unset ylabel; unset key; set format y ''");
-  plot.line("set xrange " + log_range(all, seconds));
+  plot.line("set lmargin at screen 0.595; set rmargin at screen 0.985; unset ylabel; unset key");
+  plot.line(log_axis("x", all, seconds));
   panel(plot, "2", "seconds of tracing", {first.seconds, first.relative_standard_error}, any_confirmed, any_truth);
   plot.line("unset multiplot");
   writer.draw(plot, name);

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+// Runs the built program as a user would: its exit status and what it said on both channels.
+#pragma once
+
+#include <fcntl.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace cli_test {
+
+/// A temporary folder in which the program runs.
+struct Scratch {
+  std::filesystem::path path;
+  Scratch() {
+    std::string name = (std::filesystem::temp_directory_path() / "clray-cli-XXXXXX").string();
+    path = ::mkdtemp(name.data());
+  }
+  ~Scratch() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path, ignored);
+  }
+  std::string operator/(const std::string& name) const { return (path / name).string(); }
+  bool has(const std::string& name) const { return std::filesystem::exists(path / name); }
+};
+
+inline std::string slurp(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+inline void spit(const std::string& file, const std::string& text) {
+  std::ofstream(file, std::ios::binary) << text;
+}
+
+/// A unit square in z = 0, in metres.
+inline std::string square() {
+  return "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
+}
+
+struct Outcome {
+  int status = -1;  ///< exit status, or 128 + signal
+  std::string out, err;
+};
+
+/// The program under test, from CLRAY_PROGRAM.
+inline std::string program() {
+  const char* name = ::getenv("CLRAY_PROGRAM");
+  if (!name || !*name) throw std::runtime_error("CLRAY_PROGRAM must name the built program clray");
+  return name;
+}
+
+/// A program running in the background, for signals.
+class Running {
+ public:
+  Running(const Scratch& scratch, const std::vector<std::string>& arguments,
+          const std::vector<std::string>& environment = {})
+      : scratch_(scratch) {
+    std::vector<std::string> words{program()};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    child_ = ::fork();
+    if (child_ == 0) start(words, environment);
+  }
+  void send(int signal) const { ::kill(child_, signal); }
+  Outcome wait() const {
+    int status = 0;
+    ::waitpid(child_, &status, 0);
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), slurp(scratch_ / ".out"),
+            slurp(scratch_ / ".err")};
+  }
+
+ private:
+  [[noreturn]] void start(std::vector<std::string>& words, const std::vector<std::string>& environment) const {
+    const int out = ::open((scratch_ / ".out").c_str(), O_CREAT | O_TRUNC | O_WRONLY, 0600);
+    const int err = ::open((scratch_ / ".err").c_str(), O_CREAT | O_TRUNC | O_WRONLY, 0600);
+    ::dup2(out, 1);
+    ::dup2(err, 2);
+    if (::chdir(scratch_.path.c_str()) != 0) ::_exit(126);
+    for (const auto& variable : environment) ::putenv(const_cast<char*>(variable.c_str()));
+    std::vector<char*> pointers;
+    for (auto& word : words) pointers.push_back(word.data());
+    pointers.push_back(nullptr);
+    ::execv(pointers[0], pointers.data());
+    ::_exit(127);
+  }
+
+  const Scratch& scratch_;
+  pid_t child_ = -1;
+};
+
+inline Outcome clray(const Scratch& scratch, const std::vector<std::string>& arguments,
+                     const std::vector<std::string>& environment = {}) {
+  return Running(scratch, arguments, environment).wait();
+}
+
+inline bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+}  // namespace cli_test

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+// A result appears whole or not at all, and never in place of something that clray did not write.
+#include <doctest/doctest.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "clray/error.hpp"
+#include "unit/io_support.hpp"
+
+using namespace clray;
+using io_test::Scratch;
+using io_test::slurp;
+using io_test::spit;
+namespace fs = std::filesystem;
+
+namespace {
+
+Result sample(std::uint64_t digest = 1) {
+  Result result = io_test::result();
+  result.digest = digest;
+  result.delay.push_back(io_test::delay());
+  return result;
+}
+
+WriteOptions no_plots() {
+  WriteOptions options;
+  options.plots = false;
+  return options;
+}
+
+void write(const std::string& folder, std::uint64_t digest = 1, WriteOptions options = no_plots()) {
+  write_result(sample(digest), io_test::scene(), folder, options);
+}
+
+std::string refusal(const std::string& folder) {
+  try {
+    write(folder);
+  } catch (const Error& error) {
+    CHECK(error.code() == ErrorCode::output);
+    return error.what();
+  }
+  FAIL("written");
+  return {};
+}
+
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+}  // namespace
+
+TEST_CASE("an older result is replaced whole, and nothing else is left beside it") {
+  Scratch scratch;
+  WriteOptions more = no_plots();
+  more.more.push_back([](const std::string& folder) {
+    spit(folder + "/observations.csv", "old");
+    return MoreFiles{{"observations.csv"}, "", ""};
+  });
+  write(scratch / "out", 1, more);
+  write(scratch / "out/", 2);
+  CHECK(has(slurp(scratch / "out/summary.json"), "0000000000000002"));
+  CHECK_FALSE(fs::exists(scratch / "out/observations.csv"));
+  CHECK(scratch.entries() == 1);
+}
+
+TEST_CASE("the old result survives a failing new one") {
+  Scratch scratch;
+  write(scratch / "out", 1);
+  WriteOptions failing = no_plots();
+  failing.more.push_back([](const std::string&) -> MoreFiles { throw std::runtime_error("planted"); });
+  CHECK_THROWS_AS(write(scratch / "out", 2, failing), Error);
+  CHECK(has(slurp(scratch / "out/summary.json"), "0000000000000001"));
+  CHECK(scratch.entries() == 1);
+  CHECK_THROWS_AS(write(scratch / "new/deep/er", 2, failing), Error);
+  CHECK_FALSE(fs::exists(scratch / "new"));
+}
+
+TEST_CASE("what is no result of clray is not touched") {
+  Scratch scratch;
+  fs::create_directory(scratch / "photos");
+  spit(scratch / "photos/cat.jpg", "meow");
+  CHECK(has(refusal(scratch / "photos"), "no summary.json"));
+  CHECK(slurp(scratch / "photos/cat.jpg") == "meow");
+  spit(scratch / "file", "text");
+  CHECK(has(refusal(scratch / "file"), "a file, not a folder"));
+  CHECK(slurp(scratch / "file") == "text");
+  fs::create_directory(scratch / "other");
+  spit(scratch / "other/summary.json", "{\"program\": \"other\"}");
+  CHECK(has(refusal(scratch / "other"), "not of clray"));
+  write(scratch / "out");
+  spit(scratch / "out/notes.txt", "mine");
+  CHECK(has(refusal(scratch / "out"), "notes.txt"));
+  CHECK(slurp(scratch / "out/notes.txt") == "mine");
+  CHECK(has(refusal(scratch / "file/below"), "cannot"));
+  CHECK(scratch.entries() == 4);
+  // Where nobody may write, root included.
+  CHECK(has(refusal("/proc/clray-out"), "cannot write in the folder /proc"));
+  CHECK_THROWS_AS(check_output(scratch / "photos"), Error);
+  CHECK_THROWS_AS(write(""), Error);
+}
+
+TEST_CASE("an empty folder is taken, a link is followed, parents are made") {
+  Scratch scratch;
+  fs::create_directory(scratch / "empty");
+  write(scratch / "empty");
+  CHECK(fs::exists(scratch / "empty/summary.json"));
+  fs::create_directory_symlink(scratch / "empty", scratch / "link");
+  write(scratch / "link", 3);
+  CHECK(fs::is_symlink(scratch / "link"));
+  CHECK(has(slurp(scratch / "empty/summary.json"), "0000000000000003"));
+  write(scratch / "a/b/c d 'e' [1]");
+  CHECK(fs::exists(scratch / "a/b/c d 'e' [1]/summary.json"));
+}
+
+TEST_CASE("a check leaves nothing behind") {
+  Scratch scratch;
+  check_output(scratch / "a/b/c");
+  CHECK(scratch.entries() == 0);
+}
+
+TEST_CASE("the folder has the permissions that the user's mask allows") {
+  Scratch scratch;
+  const mode_t before = ::umask(022);
+  write(scratch / "out");
+  ::umask(before);
+  struct stat information {};
+  REQUIRE(::stat((scratch / "out").c_str(), &information) == 0);
+  CHECK((information.st_mode & 0777) == 0755);
+}
+
+TEST_CASE("a full disk is an error, and nothing half-written is left") {
+  // A limit on file size stands in for the disk: writes beyond it fail with EFBIG.
+  Scratch scratch;
+  write(scratch / "out", 1);
+  rlimit before{};
+  REQUIRE(::getrlimit(RLIMIT_FSIZE, &before) == 0);
+  auto* const handler = ::signal(SIGXFSZ, SIG_IGN);
+  Result large = io_test::result();
+  large.delay.push_back(io_test::delay(5000));
+  rlimit tight = before;
+  tight.rlim_cur = 8192;
+  REQUIRE(::setrlimit(RLIMIT_FSIZE, &tight) == 0);
+  std::string message;
+  try {
+    write_result(large, io_test::scene(), scratch / "out", no_plots());
+  } catch (const Error& error) {
+    message = error.what();
+    CHECK(error.code() == ErrorCode::output);
+  }
+  ::setrlimit(RLIMIT_FSIZE, &before);
+  ::signal(SIGXFSZ, handler);
+  CHECK(has(message, "delay.csv: File too large"));
+  CHECK(has(slurp(scratch / "out/summary.json"), "0000000000000001"));
+  CHECK(scratch.entries() == 1);
+}
+
+TEST_CASE("plots: made where gnuplot is, a warning and no file where it is not") {
+  Scratch scratch;
+  std::vector<std::string> warnings;
+  WriteOptions options;
+  options.warnings = &warnings;
+  Scene scene = io_test::scene();
+  scene.name = "it's a_b^c {x} \"quoted\" `date` ü";
+  auto files = write_result(sample(), scene, scratch / "out", options);
+  CAPTURE(warnings.empty() ? std::string() : warnings.front());
+  CHECK(warnings.empty());
+  for (const char* name : {"out/delay.png", "out/error.png"}) {
+    // The first bytes of every PNG, ISO/IEC 15948.
+    CHECK(slurp(scratch / name).substr(0, 8) == "\x89PNG\r\n\x1a\n");
+  }
+  const std::string path = ::getenv("PATH");
+  ::setenv("PATH", scratch.path.c_str(), 1);
+  files = write_result(sample(), scene, scratch / "out", options);
+  ::setenv("PATH", path.c_str(), 1);
+  REQUIRE(warnings.size() == 2);
+  CHECK(has(warnings[0], "gnuplot is not installed (package gnuplot-nox)"));
+  CHECK_FALSE(fs::exists(scratch / "out/delay.png"));
+  CHECK(files.size() == 3);
+  CHECK(has(slurp(scratch / "out/summary.json"), "gnuplot is not installed"));
+}

@@ -1,0 +1,298 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tables and summary read back to the very numbers that were written (shortest round-trip digits: tolerance zero),
+// whatever the locale; references; names that users may choose.
+#include <doctest/doctest.h>
+
+#include <clocale>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "clray/error.hpp"
+#include "io/text.hpp"
+#include "unit/io_support.hpp"
+
+using namespace clray;
+using io_test::delay;
+using io_test::Scratch;
+using io_test::slurp;
+using io_test::spit;
+
+namespace {
+
+struct Table {
+  std::vector<std::string> comments, columns;
+  std::vector<std::vector<std::string>> rows;
+};
+
+std::vector<std::string> cells(const std::string& line) {
+  std::vector<std::string> all(1);
+  bool inside = false;
+  for (const char c : line) {
+    if (c == '"')
+      inside = !inside;
+    else if (c == ',' && !inside)
+      all.emplace_back();
+    else
+      all.back() += c;
+  }
+  return all;
+}
+
+Table read_table(const std::string& file) {
+  Table table;
+  std::istringstream in(slurp(file));
+  for (std::string line; std::getline(in, line);) {
+    if (line.rfind("# ", 0) == 0)
+      table.comments.push_back(line.substr(2));
+    else if (table.columns.empty())
+      table.columns = cells(line);
+    else
+      table.rows.push_back(cells(line));
+  }
+  return table;
+}
+
+double parse(const std::string& text) {
+  std::istringstream in(text);
+  in.imbue(std::locale::classic());
+  double value = 0.0;
+  in >> value;
+  REQUIRE_FALSE(in.fail());
+  return value;
+}
+
+WriteOptions no_plots() {
+  WriteOptions options;
+  options.plots = false;
+  return options;
+}
+
+}  // namespace
+
+TEST_CASE("delay.csv: columns, comments and numbers read back exactly") {
+  Scratch scratch;
+  Result result = io_test::result();
+  result.delay.push_back(delay());
+  const auto files = write_result(result, io_test::scene(), scratch / "out", no_plots());
+  CHECK(files == std::vector<std::string>{"delay.csv", "error.csv", "summary.json"});
+  const Table table = read_table(scratch / "out/delay.csv");
+  CHECK(table.columns ==
+        std::vector<std::string>{"delay_ns", "intensity_m2_per_sr_per_ns", "standard_error", "hits", "resolved"});
+  const auto comments = slurp(scratch / "out/delay.csv");
+  for (const char* part : {"# what: ", "# units: ", "# scene: meshes/plate.toml\n", "# seed: 18446744073709551615\n",
+                           "# digest: 00000000deadbeef\n"}) {
+    CAPTURE(part);
+    CHECK(comments.find(part) != std::string::npos);
+  }
+  const auto& d = result.delay.front();
+  REQUIRE(table.rows.size() == d.bin_m2_per_sr.size());
+  const double width_ns = d.bin_width_s * 1e9;
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    CHECK(parse(table.rows[i][0]) == (d.first_bin_start_s + (static_cast<double>(i) + 0.5) * d.bin_width_s) * 1e9);
+    CHECK(parse(table.rows[i][1]) == d.bin_m2_per_sr[i] / width_ns);
+    CHECK(parse(table.rows[i][2]) == d.bin_standard_error[i] / width_ns);
+    CHECK(table.rows[i][3] == std::to_string(i * 5));
+    CHECK(table.rows[i][4] == (i >= 2 ? "1" : "0"));
+  }
+}
+
+TEST_CASE("delay.csv: a column of photons where a station gave them") {
+  Scratch scratch;
+  Result result = io_test::result();
+  result.delay.push_back(delay(3));
+  result.delay.front().photons_per_ns = {0.1, 0.25, 1e-300};
+  write_result(result, io_test::scene(), scratch / "out", no_plots());
+  const Table table = read_table(scratch / "out/delay.csv");
+  REQUIRE(table.columns.back() == "photons_per_ns");
+  for (std::size_t i = 0; i < 3; ++i) CHECK(parse(table.rows[i].back()) == result.delay.front().photons_per_ns[i]);
+}
+
+TEST_CASE("several orientations and observers: rows carry their orientation, files their observer") {
+  Scratch scratch;
+  Result result = io_test::result();
+  result.orientations.assign(3, {});
+  for (std::size_t i = 0; i < 3; ++i) result.orientations[i].time_s = 0.25 * static_cast<double>(i);
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (const char* observer : {"east", "we/st"}) {
+      result.delay.push_back(delay(4, i));
+      result.delay.back().key.observer = observer;
+    }
+  }
+  write_result(result, io_test::scene(), scratch / "out", no_plots());
+  for (const char* file : {"out/delay-east.csv", "out/delay-we_st.csv"}) {
+    const Table table = read_table(scratch / file);
+    REQUIRE(table.rows.size() == 12);
+    CHECK(table.columns[0] == "orientation");
+    CHECK(table.rows[11][0] == "2");
+    CHECK(parse(table.rows[11][1]) == 0.5);
+  }
+  CHECK(read_table(scratch / "out/delay-east-totals.csv").rows.size() == 3);
+  const auto summary = nlohmann::json::parse(slurp(scratch / "out/summary.json"));
+  CHECK(summary["detectors"]["delay"]["we/st"]["orientations"].size() == 3);
+}
+
+TEST_CASE("summary.json: what it says is what was found; NaN is null") {
+  Scratch scratch;
+  Result result = io_test::result();
+  result.delay.push_back(delay());
+  result.delay.front().mean_delay_s.value = std::nan("");
+  result.partial = true;
+  result.target_asked = true;
+  Scene scene = io_test::scene();
+  scene.name = "quo\"te\nnew line ü \xff";
+  scene.path = scene.name;
+  result.warnings = {"bad byte \xfe"};
+  WriteOptions options = no_plots();
+  options.more.push_back([](const std::string& folder) {
+    spit(folder + "/observations.csv", "x\n");
+    return MoreFiles{{"observations.csv"}, "session", R"({"shots": 7})"};
+  });
+  write_result(result, scene, scratch / "out", options);
+  const auto summary = nlohmann::json::parse(slurp(scratch / "out/summary.json"));
+  CHECK(summary["clray"] == CLRAY_VERSION);
+  CHECK(summary["digest"] == "00000000deadbeef");
+  CHECK(summary["seed"] == 18446744073709551615ull);
+  CHECK(summary["partial"] == true);
+  CHECK(summary["target_reached"] == false);
+  const auto& entry = summary["detectors"]["delay"];
+  CHECK(entry["intensity_m2_per_sr"].get<double>() == 1.0 / 3.0);
+  CHECK(entry["cross_section_m2"].get<double>() == doctest::Approx(4.18879020478639).epsilon(1e-14));
+  CHECK(entry["mean_delay_ns"].is_null());
+  CHECK(entry["unresolved_bins"] == 2);
+  CHECK(summary["session"]["shots"] == 7);
+  CHECK(summary["files"].size() == 4);
+  CHECK(io_test::slurp(scratch / "out/observations.csv") == "x\n");
+  CHECK(read_table(scratch / "out/delay.csv").comments.size() == 8);
+}
+
+TEST_CASE("numbers do not follow the locale, and every double survives") {
+  // Without a comma locale on the machine this checks the classic one only.
+  for (const char* locale : {"de_DE.UTF-8", "fr_FR.UTF-8"}) std::setlocale(LC_ALL, locale);
+  const double values[] = {0.1,  1.0 / 3.0,  5e-324, std::numeric_limits<double>::max(), -2.2250738585072014e-308,
+                           1e22, 123456789.0};
+  for (const double value : values) CHECK(parse(io::number(value)) == value);
+  CHECK(io::number(std::nan("")) == "nan");
+  CHECK(io::number(-std::numeric_limits<double>::infinity()) == "-inf");
+  CHECK(io::number(1.5).find(',') == std::string::npos);
+  std::setlocale(LC_ALL, "C");
+}
+
+TEST_CASE("a number beside its error keeps two digits of the error") {
+  CHECK(format_with_error(0.68504, 0.00144) == "0.6850 ± 0.0014");
+  CHECK(format_with_error(1234.5, 12.3) == "1234 ± 12");
+  CHECK(format_with_error(4.56e-6, 1.2e-8) == "(4.560 ± 0.012)e-6");
+  CHECK(format_with_error(2.5, 0.0) == "2.5 ± 0");
+  CHECK(format_with_error(std::nan(""), 1.0) == "n/a");
+}
+
+TEST_CASE("file names from users' names: no separators, no leading dot, never empty") {
+  CHECK(io::file_name_part("../../etc") == "_._.._etc");
+  CHECK(io::file_name_part("a b\n'\"") == "a_b___");
+  CHECK(io::file_name_part("Ünïcode") == "Ünïcode");
+  CHECK(io::file_name_part("") == "unnamed");
+  CHECK(io::file_name_part(".hidden") == "_hidden");
+  CHECK(io::file_name_part(std::string(500, 'x')).size() == 80);
+}
+
+TEST_CASE("names that become alike get files of their own") {
+  Scratch scratch;
+  Result result = io_test::result();
+  for (const char* observer : {"a b", "a_b"}) {
+    result.delay.push_back(delay(2));
+    result.delay.back().key.observer = observer;
+  }
+  const auto files = write_result(result, io_test::scene(), scratch / "out", no_plots());
+  CHECK(files[0] == "delay-a_b.csv");
+  CHECK(files[1] == "delay-a_b-2.csv");
+}
+
+TEST_CASE("a reference turns claimed into true error") {
+  Scratch scratch;
+  Result truth = io_test::result();
+  truth.delay.push_back(delay());
+  truth.delay.front().intensity_m2_per_sr.value = 0.32;
+  write_result(truth, io_test::scene(), scratch / "truth", no_plots());
+  Result result = io_test::result();
+  result.delay.push_back(delay());
+  // |1/3 - 0.32| / 0.32 = 1/24; the tolerance is that of three roundings.
+  for (const char* file : {"truth/summary.json", "truth/delay.csv"}) {
+    WriteOptions options = no_plots();
+    options.reference_file = scratch / file;
+    write_result(result, io_test::scene(), scratch / "out", options);
+    const auto summary = nlohmann::json::parse(slurp(scratch / "out/summary.json"));
+    CHECK(summary["relative_true_error"].get<double>() == doctest::Approx(1.0 / 24.0).epsilon(1e-14));
+    const Table table = read_table(scratch / "out/error.csv");
+    REQUIRE(table.columns[3] == "relative_true_error");
+    CHECK(parse(table.rows[0][3]) == doctest::Approx(0.02 / 0.32).epsilon(1e-14));
+    CHECK(parse(table.rows[2][3]) == doctest::Approx(1.0 / 24.0).epsilon(1e-14));
+  }
+  spit(scratch / "hand.csv", "0.5,2\n1.0,3\n1.5,1\n");
+  CHECK(load_reference(scratch / "hand.csv").totals.at("") == 3.0);
+}
+
+TEST_CASE("references that are none are refused with their place") {
+  Scratch scratch;
+  spit(scratch / "empty.csv", "");
+  spit(scratch / "bad.csv", "# x\n1,2\n1,two\n");
+  spit(scratch / "bad.json", "{\"a\": 1}");
+  spit(scratch / "broken.json", "{\"a\"");
+  for (const char* file : {"empty.csv", "bad.csv", "bad.json", "broken.json", "absent.json"}) {
+    CAPTURE(file);
+    try {
+      load_reference(scratch / file);
+      FAIL("accepted");
+    } catch (const Error& error) {
+      CHECK(error.code() == ErrorCode::input);
+      CHECK(error.context().find(file) != std::string::npos);
+    }
+  }
+  CHECK_THROWS_WITH(load_reference(scratch / "bad.csv"), doctest::Contains("bad.csv:3"));
+}
+
+TEST_CASE("spectra, light curves and pressure tables read back exactly") {
+  Scratch scratch;
+  Result result = io_test::result();
+  result.orientations.assign(2, {});
+  result.orientations[1].time_s = 1.0 / 3.0;
+  for (std::size_t o = 0; o < 2; ++o) {
+    for (const char* name : {"400-500", "500, \"600\""}) {
+      SpectrometerResult s;
+      s.key = {"spectrometer", "", "", name, o};
+      s.band = {name, 400, 500};
+      s.intensity_m2_per_sr.value = (1.0 + static_cast<double>(o)) / 3.0;
+      s.magnitude_AB = 1.0 / 7.0;
+      s.phase_angle_rad = 0.5;
+      result.spectrometer.push_back(s);
+    }
+    PressureResult p;
+    p.key.detector = "pressure";
+    p.key.orientation = o;
+    p.sun = {0, 0.6, 0.8};
+    p.coefficient_m2.value = {1.0 / 3.0, -2.0 / 3.0, 1e-17};
+    p.torque_coefficient_m3.standard_error = {0.1, 0.2, 0.3};
+    result.pressure.push_back(p);
+  }
+  Scene scene = io_test::scene("spectrometer");
+  scene.detectors.push_back({"pressure", "pressure", {}});
+  write_result(result, scene, scratch / "out", no_plots());
+  const Table spectrum = read_table(scratch / "out/spectrum.csv");
+  REQUIRE(spectrum.rows.size() == 4);
+  const Table curve = read_table(scratch / "out/lightcurve.csv");
+  REQUIRE(curve.rows.size() == 2);
+  CHECK(curve.columns[2] == "magnitude_400-500");
+  CHECK(parse(curve.rows[1][0]) == 1.0 / 3.0);
+  CHECK(parse(curve.rows[1][1]) == doctest::Approx(28.6478897565412).epsilon(1e-14));
+  CHECK(parse(curve.rows[1][4]) == 2.0 / 3.0);
+  const Table pressure = read_table(scratch / "out/pressure.csv");
+  REQUIRE(pressure.rows.size() == 2);
+  CHECK(parse(pressure.rows[0][5]) == doctest::Approx(90.0));
+  CHECK(parse(pressure.rows[0][6]) == doctest::Approx(53.130102354156));
+  CHECK(parse(pressure.rows[0][7]) == 1.0 / 3.0);
+  CHECK(parse(pressure.rows[0][9]) == 1e-17);
+  CHECK(parse(pressure.rows[0][18]) == 0.3);
+  const auto summary = nlohmann::json::parse(slurp(scratch / "out/summary.json"));
+  // F = C / c per W/m².
+  CHECK(summary["detectors"]["pressure"]["orientations"][0]["force_N_per_W_m2"][0].get<double>() ==
+        doctest::Approx(1.0 / 3.0 / 299792458.0).epsilon(1e-15));
+}
