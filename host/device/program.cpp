@@ -51,7 +51,7 @@ std::string build_flags(bool warnings_are_errors) {
 
 cl::Program build_source(OpenedDevice& opened, const std::string& entry, const std::string& source,
                          bool warnings_are_errors, bool use_binary, bool* from_binary) {
-  const std::string flags = build_flags(warnings_are_errors);
+  const std::string flags = build_flags(warnings_are_errors) + (opened.no_optimiser ? " -cl-opt-disable" : "");
   const std::string key = flags + "\n" + source;
   const auto built = opened.programs.find(key);
   if (built != opened.programs.end()) return built->second;

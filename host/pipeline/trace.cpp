@@ -269,8 +269,9 @@ void add_unique(const std::vector<std::string>& from, std::vector<std::string>* 
 
 void warn(const Scene& scene, Result* result) {
   result->warnings = scene.warnings;
-  const bool nothing = result->energy.started != 0 && result->energy.started == result->energy.escaped &&
-                       result->energy.killed + result->energy.capped == 0;
+  const EnergyBooks& books = result->energy;
+  const bool nothing = books.started != 0 && books.incident_m2.value == 0.0 && books.capped == 0 && books.killed == 0 &&
+                       result->delay.empty() && result->spectrometer.empty();
   bool dark = !result->delay.empty() || !result->spectrometer.empty();
   for (const DelayResult& d : result->delay) dark = dark && d.intensity_m2_per_sr.value == 0.0;
   for (const SpectrometerResult& s : result->spectrometer) dark = dark && s.intensity_m2_per_sr.value == 0.0;
