@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ashikhmin-Shirley, isotropic: diffuse coat and specular peak. p = rho, d, n, f0. Ashikhmin & Shirley (2000), "An
-// anisotropic Phong BRDF model", in the d/s form of Wetterer, Hill & Jah (2014), s = 1 - d: f = d·R_d + s·R_s with
-// the half vector normalised and measured from the normal (c = n·h), s·F = s·f0 + (1 - s·f0)(1 - u)^5, u = wo·h, and
-// the specular part without its singularity at grazing: (n+1)/(4 pi)·sF·c^(n+1)/((mu_i + mu_o)·max(mu_i, mu_o)).
-// d = 1 leaves a grazing Fresnel coat. Sampling: the half vector by c^n, or a cosine for the diffuse part.
+// Ashikhmin-Shirley, isotropic: diffuse coat and specular peak. p = rho, d, n,
+// f0. Ashikhmin & Shirley (2000), "An anisotropic Phong BRDF model", in the d/s
+// form of Wetterer, Hill & Jah (2014), s = 1 - d: f = d·R_d + s·R_s with the
+// half vector normalised and measured from the normal (c = n·h), s·F = s·f0 +
+// (1 - s·f0)(1 - u)^5, u = wo·h, and the specular part without its singularity
+// at grazing: (n+1)/(4 pi)·sF·c^(n+1)/((mu_i + mu_o)·max(mu_i, mu_o)). d = 1
+// leaves a grazing Fresnel coat. Sampling: the half vector by c^n, or a cosine
+// for the diffuse part.
 #include "brdf/brdf.h"
 #include "brdf/quadrature.h"
 
-/// log(n·h): by the sine near the peak, where n amplifies a rounding of the cosine; never below -745.
+/// log(n·h): by the sine near the peak, where n amplifies a rounding of the
+/// cosine; never below -745.
 CLRAY_FN f64 brdf_ashikhmin_shirley_log_cos(BrdfAngles a) {
   if (a.sin2_half < 0.5) return 0.5 * el_log1p(-a.sin2_half);
   return a.cos_half > 1.0e-300 ? el_log(a.cos_half) : -745.0;
@@ -35,7 +39,8 @@ CLRAY_FN f64 brdf_ashikhmin_shirley_diffuse(const CLRAY_GLOBAL ClrayMaterial* m)
   return m->p[1] * (28.0 / 23.0 * CLRAY_INV_PI) * m->p[0] * (1.0 - brdf_ashikhmin_shirley_sf0(m));
 }
 
-/// Probability of sampling the half vector, from rough reflectances of the two parts.
+/// Probability of sampling the half vector, from rough reflectances of the two
+/// parts.
 CLRAY_FN f64 brdf_ashikhmin_shirley_share(const CLRAY_GLOBAL ClrayMaterial* m, f64 mu_i) {
   const f64 sf0 = brdf_ashikhmin_shirley_sf0(m);
   const f64 diffuse = m->p[0] * m->p[1] * (1.0 - sf0) * brdf_ashikhmin_shirley_g(mu_i);
@@ -92,8 +97,9 @@ CLRAY_FN BrdfSample brdf_ashikhmin_shirley_sample(const CLRAY_GLOBAL ClrayMateri
   return s;
 }
 
-/// (n+1)·sF/(8 pi u) for the peak, by c <= 1 and mu_o <= max, and the diffuse part with g <= 31/32. Below u = 1e-3
-/// (forward scattering within 0.06 degrees) it stays at that of u = 1e-3 and may be exceeded.
+/// (n+1)·sF/(8 pi u) for the peak, by c <= 1 and mu_o <= max, and the diffuse
+/// part with g <= 31/32. Below u = 1e-3 (forward scattering within 0.06
+/// degrees) it stays at that of u = 1e-3 and may be exceeded.
 CLRAY_FN f64 brdf_ashikhmin_shirley_bound(const CLRAY_GLOBAL ClrayMaterial* m, const CLRAY_GLOBAL f64* tables,
                                           f64 cos_half_phase) {
   (void)tables;
@@ -103,8 +109,42 @@ CLRAY_FN f64 brdf_ashikhmin_shirley_bound(const CLRAY_GLOBAL ClrayMaterial* m, c
 }
 
 #ifndef __OPENCL_VERSION__
-/// The diffuse part integrates to rho·d·(1 - s·f0)·g(mu). The peak is the mean of sF·mu_o/max(mu, mu_o) over half
-/// vectors of density (n+1)/(2 pi)·c^n.
+/// Integrals of cos^0 … cos^6 from 0 to the angle with this cosine.
+inline void brdf_ashikhmin_shirley_moments(f64 cosine, f64* moment) {
+  const f64 sine = sqrt((1.0 - cosine) * (1.0 + cosine));
+  f64 power = sine;  // cos^(k-1)·sin
+  moment[0] = el_acos(cosine);
+  moment[1] = sine;
+  for (i32 k = 2; k <= 6; ++k) {
+    power *= cosine;
+    moment[k] = fma((f64)(k - 1), moment[k - 2], power) / (f64)k;
+  }
+}
+
+/// Integral over azimuth of sF·mu_o/max(mu, mu_o): a polynomial in cos(phi) on
+/// either side of mu_o = mu.
+inline f64 brdf_ashikhmin_shirley_azimuth(BrdfHalfVector h, f64 sf0) {
+  static const f64 binomial[6] = {1.0, 5.0, 10.0, 10.0, 5.0, 1.0};
+  f64 above[7], all[7], fresnel[6];
+  brdf_ashikhmin_shirley_moments(h.cos_at(h.mu_i), above);
+  brdf_ashikhmin_shirley_moments(h.cos_at(0.0), all);
+  // sF = sf0 + (1 - sf0)·(a + b·cos(phi))^5
+  const f64 b = -h.sin_i * h.sin_h, a = fma(-h.mu_i, h.cos_h, 1.0);
+  f64 power = 1.0 - sf0;
+  for (i32 k = 0; k <= 5; ++k, power *= b) fresnel[k] = binomial[k] * power;
+  power = 1.0;
+  for (i32 k = 5; k >= 0; --k, power *= a) fresnel[k] *= power;
+  fresnel[0] += sf0;
+  f64 full = 0.0, part = 0.0;
+  for (i32 k = 0; k <= 5; ++k) {
+    full = fma(fresnel[k], above[k], full);
+    part = fma(fresnel[k], fma(h.base, all[k] - above[k], h.slope * (all[k + 1] - above[k + 1])), part);
+  }
+  return h.mu_i > 0.0 ? full + part / h.mu_i : full;
+}
+
+/// The diffuse part integrates to rho·d·(1 - s·f0)·g(mu). The peak is the mean
+/// of sF·mu_o/max(mu, mu_o) over half vectors of density (n+1)/(2 pi)·c^n.
 inline f64 brdf_ashikhmin_shirley_reflectance(const ClrayMaterial* m, const f64* tables, f64 mu) {
   (void)tables;
   const f64 n = m->p[2], sf0 = brdf_ashikhmin_shirley_sf0(m);
@@ -113,11 +153,7 @@ inline f64 brdf_ashikhmin_shirley_reflectance(const ClrayMaterial* m, const f64*
     const BrdfHalfVector h(mu, theta);
     const f64 log_c = h.sin_h * h.sin_h < 0.5 ? 0.5 * el_log1p(-h.sin_h * h.sin_h) : el_log(h.cos_h);
     const f64 density = (n + 1.0) * el_exp(n * log_c) * h.sin_h;
-    if (density < 1.0e-20) return 0.0;
-    return density * h.over_azimuth(&mu, 1, [&](f64 cos_phi) {
-      const f64 mu_o = h.mu_o(cos_phi);
-      return brdf_ashikhmin_shirley_fresnel(sf0, 1.0 - f64_min(1.0, h.u(cos_phi))) * mu_o / f64_max(mu, mu_o);
-    });
+    return density < 1.0e-20 ? 0.0 : density * brdf_ashikhmin_shirley_azimuth(h, sf0);
   });
   const f64 diffuse = m->p[0] * m->p[1] * (1.0 - sf0) * brdf_ashikhmin_shirley_g(mu);
   return fma(CLRAY_INV_PI, specular, diffuse);

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cook & Torrance (1982) microfacets with the GGX distribution of Walter et al. (2007), the height-correlated Smith
-// masking of Heitz (2014) and Schlick's Fresnel factor. p = roughness (alpha), f0. With L(mu) = sqrt(alpha² +
-// (1 - alpha²)·mu²): f = F·D/(2·(mu_o·L(mu_i) + mu_i·L(mu_o))), D = alpha²/(pi·(alpha²·cos² + sin²)²) from the sine of
-// the half vector, so that alpha = 0.001 loses no digits. Sampling: visible normals by spherical caps (Dupuy & Benyoub
-// 2023). One bounce between facets: the reflectance of a rough surface stays below f0.
+// Cook & Torrance (1982) microfacets with the GGX distribution of Walter et al.
+// (2007), the height-correlated Smith masking of Heitz (2014) and Schlick's
+// Fresnel factor. p = roughness (alpha), f0. With L(mu) = sqrt(alpha² + (1 -
+// alpha²)·mu²): f = F·D/(2·(mu_o·L(mu_i) + mu_i·L(mu_o))), D =
+// alpha²/(pi·(alpha²·cos² + sin²)²) from the sine of the half vector, so that
+// alpha = 0.001 loses no digits. Sampling: visible normals by spherical caps
+// (Dupuy & Benyoub 2023). One bounce between facets: the reflectance of a rough
+// surface stays below f0.
 #include "brdf/brdf.h"
 #include "brdf/quadrature.h"
 
@@ -47,10 +50,11 @@ CLRAY_FN BrdfSample brdf_ggx_sample(const CLRAY_GLOBAL ClrayMaterial* m, const C
   s.pdf = 0.0;
   s.ok = 0;
   s.delta = 0;
-  // A uniform point on the cap of the sphere that the stretched direction sees, then half way and stretched back.
+  // A uniform point on the cap of the sphere that the stretched direction sees,
+  // then half way and stretched back.
   const vec3 w = v3_unit(v3(alpha * wi.x, alpha * wi.y, wi.z));
   const f64 above = (1.0 - u2) * (1.0 + w.z);  // z of the point plus w.z
-  const f64 z = above - w.z;
+  const f64 z = fma(1.0 - u2, 1.0 + w.z, -w.z);
   const f64 r = sqrt(f64_max(0.0, (1.0 - z) * (1.0 + z)));
   el_sincos(2.0 * CLRAY_PI * u1, &sine, &cosine);
   const vec3 h = v3_unit(v3(alpha * fma(r, cosine, w.x), alpha * fma(r, sine, w.y), above));
@@ -63,7 +67,8 @@ CLRAY_FN BrdfSample brdf_ggx_sample(const CLRAY_GLOBAL ClrayMaterial* m, const C
   return s;
 }
 
-/// Twice the value at the peak's centre, F/(4 pi alpha²·max(u, alpha)): covers normals that lean toward wo.
+/// Twice the value at the peak's centre, F/(4 pi alpha²·max(u, alpha)): covers
+/// normals that lean toward wo.
 CLRAY_FN f64 brdf_ggx_bound(const CLRAY_GLOBAL ClrayMaterial* m, const CLRAY_GLOBAL f64* tables, f64 cos_half_phase) {
   (void)tables;
   const f64 alpha = m->p[0], u = f64_min(1.0, f64_max(0.0, cos_half_phase));
@@ -75,11 +80,10 @@ CLRAY_FN f64 brdf_ggx_bound(const CLRAY_GLOBAL ClrayMaterial* m, const CLRAY_GLO
 inline f64 brdf_ggx_reflectance(const ClrayMaterial* m, const f64* tables, f64 mu) {
   (void)tables;
   const f64 alpha = m->p[0], l_i = brdf_ggx_l(alpha, mu);
-  BrdfCuts cuts = brdf_lobe_cuts(mu, alpha);
-  cuts.add_scales(0.5 * (0.5 * CLRAY_PI + el_acos(f64_min(mu, 1.0))), alpha);
-  f64 levels[16];  // L(mu_o) bends where mu_o is about alpha
+  const BrdfCuts cuts = brdf_lobe_cuts(mu, alpha);
+  f64 levels[16];  // the masking bends where mu_o is about alpha or mu
   i32 count = 0;
-  for (f64 level = 0.5 * alpha; level < 0.5 && count < 16; level *= 4.0) levels[count++] = level;
+  for (f64 level = 0.5 * f64_min(alpha, f64_max(mu, 1.0e-5)); level < 0.5; level *= 8.0) levels[count++] = level;
   return 2.0 * brdf_integral(cuts, [&](f64 theta) {
            const BrdfHalfVector h(mu, theta);
            const f64 density = brdf_ggx_d(alpha, h.cos_h * h.cos_h, h.sin_h * h.sin_h) * h.sin_h;

@@ -6,18 +6,18 @@
 #include "brdf/brdf.h"
 #include "brdf/quadrature.h"
 
-/// P for |wi + wo|² = 2 + 2 cos(alpha).
-CLRAY_FN f64 brdf_lommel_seeliger_phase(f64 g, f64 half2) {
+/// P for h = |wi + wo|, h² = 2 + 2 cos(alpha).
+CLRAY_FN f64 brdf_lommel_seeliger_phase(f64 g, f64 h) {
   // 1 + g² + 2g·cos(alpha) = (1 - |g|)² + |g|·(2 + 2 cos(alpha) or 2 - 2 cos(alpha)): no cancellation at the peak
   const f64 size = fabs(g), gap = 1.0 - size;
-  const f64 x = fma(gap, gap, size * (g > 0.0 ? half2 : f64_max(0.0, 4.0 - half2)));
+  const f64 x = fma(gap, gap, size * (g > 0.0 ? h * h : f64_max(0.0, fma(-h, h, 4.0))));
   return gap * (1.0 + size) / (x * sqrt(x));
 }
 
 CLRAY_FN f64 brdf_lommel_seeliger_eval(const CLRAY_GLOBAL ClrayMaterial* m, const CLRAY_GLOBAL f64* tables,
                                        BrdfAngles a) {
   (void)tables;
-  const f64 phase = brdf_lommel_seeliger_phase(m->p[1], a.half_length * a.half_length);
+  const f64 phase = brdf_lommel_seeliger_phase(m->p[1], a.half_length);
   return f64_min(m->p[0] * 0.25 * CLRAY_INV_PI * phase / (a.mu_i + a.mu_o), 1.0e300);
 }
 
@@ -25,7 +25,7 @@ CLRAY_FN f64 brdf_lommel_seeliger_pdf(const CLRAY_GLOBAL ClrayMaterial* m, const
                                       BrdfAngles a) {
   (void)tables;
   if (m->p[1] == 0.0) return 0.5 * CLRAY_INV_PI;
-  const f64 phase = brdf_lommel_seeliger_phase(m->p[1], a.half_length * a.half_length);
+  const f64 phase = brdf_lommel_seeliger_phase(m->p[1], a.half_length);
   return fma(0.125 * CLRAY_INV_PI, phase, 0.25 * CLRAY_INV_PI);
 }
 
@@ -64,7 +64,7 @@ CLRAY_FN BrdfSample brdf_lommel_seeliger_sample(const CLRAY_GLOBAL ClrayMaterial
 CLRAY_FN f64 brdf_lommel_seeliger_bound(const CLRAY_GLOBAL ClrayMaterial* m, const CLRAY_GLOBAL f64* tables,
                                         f64 cos_half_phase) {
   (void)tables;
-  return m->p[0] * 0.25 * CLRAY_INV_PI * brdf_lommel_seeliger_phase(m->p[1], 4.0 * cos_half_phase * cos_half_phase);
+  return m->p[0] * 0.25 * CLRAY_INV_PI * brdf_lommel_seeliger_phase(m->p[1], 2.0 * cos_half_phase);
 }
 
 #ifndef __OPENCL_VERSION__

@@ -6,16 +6,16 @@
 
 /// Fresnel reflectance at incidence cosine mu > 0.
 CLRAY_FN f64 brdf_mirror_fresnel(f64 eta, f64 k, f64 mu) {
-  const f64 mu2 = mu * mu, sin2 = (1.0 - mu) * (1.0 + mu);
+  const f64 sin2 = (1.0 - mu) * (1.0 + mu);
   // a² - b² and 2ab of the refracted wave's normal component a + ib
   const f64 difference = fma(mu, mu, fma(-k, k, (eta - 1.0) * (eta + 1.0))), product = 2.0 * eta * k;
   const f64 size = sqrt(fma(difference, difference, product * product));
   const f64 a2 = difference > 0.0 ? 0.5 * (size + difference)
                                   : (size > difference ? 0.5 * product * product / (size - difference) : 0.0);
-  const f64 t = 2.0 * sqrt(a2) * mu;
-  const f64 s_polarised = (size + mu2 - t) / (size + mu2 + t);
-  const f64 p1 = fma(sin2, sin2, mu2 * size), p2 = t * sin2;
-  const f64 ratio = p1 + p2 > 0.0 ? (p1 - p2) / (p1 + p2) : 1.0;
+  const f64 t = 2.0 * sqrt(a2) * mu, even = fma(mu, mu, size);
+  const f64 s_polarised = fma(-2.0 * sqrt(a2), mu, even) / fma(2.0 * sqrt(a2), mu, even);
+  const f64 p = fma(sin2, sin2, mu * mu * size);
+  const f64 ratio = p > 0.0 ? fma(-t, sin2, p) / fma(t, sin2, p) : 1.0;
   return f64_min(1.0, f64_max(0.0, 0.5 * s_polarised * (1.0 + ratio)));
 }
 

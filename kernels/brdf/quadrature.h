@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Quadrature for directional reflectances, on the host alone: 16-point Gauss-Legendre over pieces whose ends lie where
-// an integrand has kinks or changes scale. Angles in rad. Uses elementary.h, so results do not depend on the C library.
+// Quadrature for directional reflectances, on the host alone: 16-point
+// Gauss-Legendre over pieces whose ends lie where an integrand has kinks or
+// changes scale. Angles in rad. Uses elementary.h, so results do not depend on
+// the C library.
 #ifndef CLRAY_BRDF_QUADRATURE_H
 #define CLRAY_BRDF_QUADRATURE_H
 #ifndef __OPENCL_VERSION__
@@ -43,7 +45,8 @@ struct BrdfCuts {
   }
 };
 
-/// Integral of f between the ends of `cuts`; square-root behaviour at each cut is smoothed away by x = t²(3 - 2t).
+/// Integral of f between the ends of `cuts`; square-root behaviour at each cut
+/// is smoothed away by x = t²(3 - 2t).
 template <class F>
 f64 brdf_integral(const BrdfCuts& cuts, F f) {
   f64 sum = 0.0, a = cuts.low;
@@ -58,8 +61,8 @@ f64 brdf_integral(const BrdfCuts& cuts, F f) {
   return sum;
 }
 
-/// A mirror-like lobe: light from elevation mu, half vector h at angle theta from the normal and phi from the plane of
-/// incidence.
+/// A mirror-like lobe: light from elevation mu, half vector h at angle theta
+/// from the normal and phi from the plane of incidence.
 struct BrdfHalfVector {
   f64 mu_i, sin_i;
   f64 sin_h, cos_h;
@@ -75,14 +78,18 @@ struct BrdfHalfVector {
   f64 mu_o(f64 cos_phi) const { return fma(slope, cos_phi, base); }
   /// wi·h
   f64 u(f64 cos_phi) const { return fma(sin_i * sin_h, cos_phi, mu_i * cos_h); }
-  /// Integral over 0 < phi < pi, mu_o > 0, of f(cos_phi), cut where mu_o passes one of `count` ascending levels.
+  /// Where mu_o falls to `level`: the cosine of phi, held to [-1, 1].
+  f64 cos_at(f64 level) const {
+    if (base + slope <= level) return 1.0;
+    return base - slope >= level ? -1.0 : f64_max(-1.0, f64_min(1.0, (level - base) / slope));
+  }
+  /// Integral over 0 < phi < pi, mu_o > 0, of f(cos_phi), cut where mu_o passes
+  /// one of `count` ascending levels.
   template <class F>
   f64 over_azimuth(const f64* levels, i32 count, F f) const {
     f64 sum = 0.0, from = 0.0;
     for (i32 k = count - 1; k >= -1 && from < CLRAY_PI; --k) {
-      const f64 level = k < 0 ? 0.0 : levels[k];
-      if (base + slope <= level) continue;
-      const f64 to = base - slope >= level ? CLRAY_PI : el_acos(f64_max(-1.0, f64_min(1.0, (level - base) / slope)));
+      const f64 to = el_acos(cos_at(k < 0 ? 0.0 : levels[k]));
       if (to > from)
         sum += brdf_gauss(from, to, [&](f64 phi) {
           f64 s, c;
@@ -95,15 +102,21 @@ struct BrdfHalfVector {
   }
 };
 
-/// The cuts in theta of a lobe of angular width `width`: its own scales, and where the mirrored direction meets the
-/// horizon (mu_o = 0) or the elevation of the light (mu_o = mu).
+/// The cuts in theta of a lobe of angular width `width`: its own scales, and
+/// where the mirrored direction meets the horizon (mu_o = 0) or the elevation
+/// of the light (mu_o = mu).
 inline BrdfCuts brdf_lobe_cuts(f64 mu, f64 width) {
   const f64 theta_i = el_acos(f64_min(mu, 1.0)), right = 0.5 * CLRAY_PI;
   BrdfCuts cuts(0.0, right);
   for (f64 step = width; step < right; step *= 2.0) cuts.add(step);
   cuts.add_scales(0.5 * (right - theta_i), f64_min(width, f64_max(0.25 * (right - theta_i), 1.0e-4)));
   cuts.add(theta_i);
-  cuts.add(0.5 * (right + theta_i));
+  // A narrow lobe has nothing to lose near the horizon, a wide one bends there
+  // on the scale of the light's elevation.
+  if (width > 0.02)
+    cuts.add_scales(0.5 * (right + theta_i), f64_max(0.25 * (right - theta_i), 1.0e-4));
+  else
+    cuts.add(0.5 * (right + theta_i));
   return cuts;
 }
 

@@ -21,8 +21,8 @@ CLRAY_FN f64 el_scale(f64 v, i32 k) {
   return v * CLRAY_AS_F64((u64)(half_k + 1023) << 52) * CLRAY_AS_F64((u64)(k - half_k + 1023) << 52);
 }
 
-/// e^r - 1 - r over |r| <= ln2/2, given r.
-CLRAY_FN f64 el_exp_tail(f64 r) {
+/// e^r - 1 - r + low for |r| <= ln2/2.
+CLRAY_FN f64 el_exp_tail(f64 r, f64 low) {
   f64 g = 2.0911229928855294e-09;
   g = fma(g, r, 2.5100376111361421e-08);
   g = fma(g, r, 2.7557282983637385e-07);
@@ -34,7 +34,7 @@ CLRAY_FN f64 el_exp_tail(f64 r) {
   g = fma(g, r, 0.041666666666666664);
   g = fma(g, r, 0.16666666666666669);
   g = fma(g, r, 0.5);
-  return g * (r * r);
+  return fma(g, r * r, low);
 }
 
 /// x + x_lo = k·ln2 + r + r_lo with |r| <= ln2/2; returns k.
@@ -52,7 +52,7 @@ CLRAY_FN i32 el_exp_reduce(f64 x, f64 x_lo, f64* r, f64* r_lo) {
 CLRAY_FN f64 el_exp_parts(f64 x, f64 x_lo) {
   f64 r, r_lo;
   const i32 k = el_exp_reduce(x, x_lo, &r, &r_lo);
-  return el_scale(1.0 + (r + (r_lo + el_exp_tail(r))), k);
+  return el_scale(1.0 + (r + el_exp_tail(r, r_lo)), k);
 }
 
 /// e^x.
@@ -71,7 +71,7 @@ CLRAY_FN f64 el_expm1(f64 x) {
   if (fabs(x) < 5.0e-17) return x;
   f64 r, r_lo;
   const i32 k = el_exp_reduce(x, 0.0, &r, &r_lo);
-  const f64 low = fma(r_lo, r, r_lo) + el_exp_tail(r);
+  const f64 low = el_exp_tail(r, fma(r_lo, r, r_lo));
   if (k == 0) return r + low;
   if (k > 60) return el_scale(1.0 + (r + low), k);
   const f64 one = 1.0 - el_scale(1.0, -k);
@@ -97,7 +97,6 @@ CLRAY_FN i32 el_log_reduce(f64 x, f64* f) {
 CLRAY_FN f64 el_log_sum(i32 k, f64 f, f64 c) {
   const f64 s = f / (2.0 + f);
   const f64 z = s * s;
-  const f64 half_f2 = 0.5 * f * f;
   f64 g = 0.14616576421644387;
   g = fma(g, z, 0.15331711346672997);
   g = fma(g, z, 0.18182889433757515);
@@ -106,8 +105,8 @@ CLRAY_FN f64 el_log_sum(i32 k, f64 f, f64 c) {
   g = fma(g, z, 0.39999999999899449);
   g = fma(g, z, 0.66666666666666696);
   // 2 atanh(s) = f - f²/2 + s·(f²/2 + z·g)
-  const f64 low = fma(s, fma(z, g, half_f2), fma((f64)k, EL_LN2_LO, c));
-  return fma((f64)k, EL_LN2_HI, f - (half_f2 - low));
+  const f64 low = fma(s, fma(z, g, 0.5 * f * f), fma((f64)k, EL_LN2_LO, c));
+  return fma((f64)k, EL_LN2_HI, f - fma(0.5 * f, f, -low));
 }
 
 /// Natural logarithm; -inf at 0, NaN below.
@@ -151,18 +150,14 @@ CLRAY_FN f64 el_log_parts(f64 x, f64* low) {
   g = fma(g, z, 0.20000000000000012);
   // atanh(s) = s + s·b, b = z·(1/3 + z·g)
   const f64 third = 0.33333333333333331;
-  const f64 zg = z * g;
-  const f64 c = third + zg;
-  const f64 c_lo = ((third - c) + zg) + 1.8503717077085941e-17;
+  const f64 c = fma(z, g, third);
+  const f64 c_lo = fma(z, g, third - c) + 1.8503717077085941e-17;
   const f64 b = z * c;
   const f64 b_lo = fma(z, c, -b) + fma(z, c_lo, z_lo * c);
-  const f64 p = s * b;
-  const f64 p_lo = fma(s, b, -p) + fma(s, b_lo, s_lo * b);
-  const f64 a = s + p;
-  const f64 a_lo = ((s - a) + p) + (s_lo + p_lo);
-  const f64 k_hi = k * EL_LN2_HI;
-  const f64 h = fma(2.0, a, k_hi);
-  const f64 l = fma(2.0, a, k_hi - h) + fma(2.0, a_lo, k * EL_LN2_LO);
+  const f64 a = fma(s, b, s);
+  const f64 a_lo = fma(s, b, s - a) + fma(s, b_lo, fma(s_lo, b, s_lo));
+  const f64 h = fma(k, EL_LN2_HI, 2.0 * a);
+  const f64 l = fma(2.0, a, fma(k, EL_LN2_HI, -h)) + fma(2.0, a_lo, k * EL_LN2_LO);
   const f64 high = h + l;
   *low = (h - high) + l;
   return high;
@@ -198,10 +193,9 @@ CLRAY_FN void el_sincos_kernel(f64 r, f64 r_lo, f64* s, f64* c) {
   q = fma(q, z, 2.4801587298747373e-05);
   q = fma(q, z, -0.0013888888888887385);
   q = fma(q, z, 0.041666666666666664);
-  const f64 half_z = 0.5 * z;
-  const f64 w = 1.0 - half_z;
-  *s = r + fma(p * z, r, fma(-half_z, r_lo, r_lo));
-  *c = w + (((1.0 - w) - half_z) + fma(q * z, z, -r * r_lo));
+  const f64 w = fma(-0.5, z, 1.0);
+  *s = r + fma(p * z, r, fma(-0.5 * z, r_lo, r_lo));
+  *c = w + (fma(-0.5, z, 1.0 - w) + fma(q * z, z, -r * r_lo));
 }
 
 /// Sine and cosine. Relative accuracy for |x| <= 2^20, absolute 4e-16 for |x| <= 2^30, NaN beyond: reduce whole
@@ -215,14 +209,12 @@ CLRAY_FN void el_sincos(f64 x, f64* s, f64* c) {
   // pi/2 in parts of 33, 33, 33 and 53 bits: with |k| <= 2^20 the first three products are exact.
   const f64 k = floor(fma(x, 0.63661977236758138, 0.5));
   const f64 a = fma(-k, 1.5707963267341256, x);
-  const f64 w2 = k * 6.077100506303966e-11;
-  const f64 b = a - w2;
+  const f64 b = fma(-k, 6.077100506303966e-11, a);
   const f64 bb = b - a;
-  const f64 b_lo = (a - (b - bb)) - (w2 + bb);
-  const f64 w3 = k * 2.0222662487111665e-21;
-  const f64 d = b - w3;
+  const f64 b_lo = (a - (b - bb)) - fma(k, 6.077100506303966e-11, bb);
+  const f64 d = fma(-k, 2.0222662487111665e-21, b);
   const f64 dd = d - b;
-  const f64 d_lo = ((b - (d - dd)) - (w3 + dd)) + fma(-k, 8.4784276603689e-32, b_lo);
+  const f64 d_lo = ((b - (d - dd)) - fma(k, 2.0222662487111665e-21, dd)) + fma(-k, 8.4784276603689e-32, b_lo);
   const f64 r = d + d_lo;
   f64 sine, cosine;
   el_sincos_kernel(r, (d - r) + d_lo, &sine, &cosine);

@@ -193,6 +193,10 @@ TEST_CASE("GGX: formula in tangents, and the white furnace") {
     }
     CHECK(worst < 1e-13L);
     const Model white = model("ggx", {{"roughness", alpha}, {"f0", 1.0}});
+    // alpha = 1 makes D constant: f = 1/(2 pi (mu_i + mu_o)) in closed form
+    if (alpha == 1.0)
+      for (double mu : {1e-3, 0.1, 0.5, 1.0})
+        CHECK(white.reflectance(mu) == doctest::Approx(1.0 - mu * std::log1p(1.0 / mu)).epsilon(1e-9));
     for (double mu : {0.01, 0.1, 0.5, 1.0}) {
       CHECK(white.reflectance(mu) <= 1.0 + 1e-12);
       if (alpha <= 0.01 && mu >= 0.1) CHECK(white.reflectance(mu) > 0.98);

@@ -49,7 +49,7 @@ TEST_CASE("every model is reciprocal") {
 }
 
 TEST_CASE("reflectance is within [0,1] and equals an independent quadrature of eval") {
-  // Tolerance: what brdf.h promises of reflectance, 1e-8, relative to at least 1e-6.
+  // Tolerance: 1e-9 (2e-11 was seen), relative to at least 1e-6.
   double worst = 0.0;
   std::string where;
   for (const Model& m : models(false)) {
@@ -65,7 +65,7 @@ TEST_CASE("reflectance is within [0,1] and equals an independent quadrature of e
       const double r = m.reflectance(mu);
       const double q = Cells(mu).integral(mu, [&](const BrdfAngles& a) { return m.eval(a) * a.mu_o; });
       const double error = std::fabs(r - q) / std::max(q, 1e-6);
-      CHECK(error < 1e-8);
+      CHECK(error < 1e-9);
       if (error > worst) {
         worst = error;
         where = m.name + " at " + std::to_string(mu);
