@@ -104,7 +104,7 @@ TEST_CASE("a signal ends early: what is finished is saved and marked, status 128
     const Scratch scratch;
     spit(scratch / "square.obj", square());
     // More rays than any machine finishes in the time given here.
-    const Running running(scratch, {"--device", "cpu", "--rays", "2^40", "--no-plots", "square.obj", "--out", "out"});
+    const Running running(scratch, {"--device", "cpu", "--rays", "2^36", "--no-plots", "square.obj", "--out", "out"});
     ::poll(nullptr, 0, 8000);
     running.send(signal);
     const auto outcome = running.wait();
@@ -113,7 +113,7 @@ TEST_CASE("a signal ends early: what is finished is saved and marked, status 128
     CHECK(contains(outcome.err, "interrupted"));
     REQUIRE(scratch.has("out/summary.json"));
     const auto result = summary(scratch, "out");
-    CHECK(result["partial"] == true);
-    CHECK(result["rays"].get<double>() < std::pow(2.0, 40));
+    CHECK(result.value("partial", false));
+    CHECK(result["rays"].get<double>() < std::pow(2.0, 36));
   }
 }
