@@ -106,6 +106,20 @@ void read_header(RecordReader& in, Prediction* p) {
   in.fail("the file ends; expected record H9");
 }
 
+void prepare(Prediction* p) {
+  for (std::size_t first = 0; first + kPoints <= p->time_s.size(); ++first) {
+    std::array<double, kPoints> inverse{};
+    for (std::size_t i = 0; i < kPoints; ++i) {
+      double product = 1.0;
+      for (std::size_t j = 0; j < kPoints; ++j) {
+        if (j != i) product *= p->time_s[first + i] - p->time_s[first + j];
+      }
+      inverse[i] = 1.0 / product;
+    }
+    p->inverse_products.push_back(inverse);
+  }
+}
+
 bool is_other_record(const std::string& type) {
   static const char* const kOthers[] = {"00", "20", "30", "40", "50", "60", "70"};
   return std::any_of(std::begin(kOthers), std::end(kOthers), [&](const char* known) { return type == known; });
@@ -133,6 +147,7 @@ Prediction read_cpf(const std::string& path) {
   if (p.time_s.size() < kPoints) {
     in.fail(fmt::format("{} positions (records 10); expected at least {}", p.time_s.size(), kPoints));
   }
+  prepare(&p);
   return p;
 }
 
@@ -147,13 +162,16 @@ Vec3 position_at(const Prediction& p, double time_s) {
       static_cast<std::size_t>(std::upper_bound(p.time_s.begin(), p.time_s.end(), time_s) - p.time_s.begin());
   const std::size_t half = kPoints / 2;
   const std::size_t first = std::min(after > half ? after - half : 0, p.time_s.size() - kPoints);
+  // Products of the differences on the left and right of each point.
+  double left[kPoints], right[kPoints];
+  left[0] = right[kPoints - 1] = 1.0;
+  for (std::size_t i = 1; i < kPoints; ++i) {
+    left[i] = left[i - 1] * (time_s - p.time_s[first + i - 1]);
+    right[kPoints - 1 - i] = right[kPoints - i] * (time_s - p.time_s[first + kPoints - i]);
+  }
   Vec3 position(0.0);
   for (std::size_t i = 0; i < kPoints; ++i) {
-    double weight = 1.0;
-    for (std::size_t j = 0; j < kPoints; ++j) {
-      if (j != i) weight *= (time_s - p.time_s[first + j]) / (p.time_s[first + i] - p.time_s[first + j]);
-    }
-    position += weight * p.position_m[first + i];
+    position += (left[i] * right[i] * p.inverse_products[first][i]) * p.position_m[first + i];
   }
   return position;
 }

@@ -24,6 +24,8 @@ struct Prediction {
   Epoch first;                 ///< of the first position
   std::vector<double> time_s;  ///< from `first`
   std::vector<Vec3> position_m;
+  /// For each first point of ten: 1 over the product of time differences in each point's Lagrange polynomial.
+  std::vector<std::array<double, 10>> inverse_products;
 };
 
 /// Reads a file. Throws Error(input) with file:line for unknown or malformed records, another version, another frame

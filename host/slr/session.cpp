@@ -97,7 +97,8 @@ Session::Session(const Result& result, const Scene& scene, const SessionOptions&
   // A gate of a later shot may come earlier by the change of range: at most 1e-4 of a period below 15 km/s.
   in_order_ = station_.dead_time_s > 0.0 && station_.dead_time_s > (1.0 - 1e-4) / station_.rate_Hz - station_.gate_s;
   gate_of(*delays_.front());
-  ranges_.range_m(start_s_);
+  start_range_m_ = ranges_.range_m(start_s_);
+  start_brightness_ = 4.0 * kPi * link_budget(station_, wavelength_nm_, start_range_m_).photons_per_m2;
   ranges_.range_m(stop_s());
 }
 
@@ -156,15 +157,13 @@ double Session::mean_cross_section_m2() const {
 }
 
 void Session::set_ranges(std::uint64_t first, std::uint32_t count, Block* block) const {
-  const auto light = [&](double range) {
-    return 4.0 * kPi * link_budget(station_, wavelength_nm_, range).photons_per_m2;
-  };
   const std::uint32_t size = ranges_.fixed() ? 1 : count;
   block->range_m.resize(size);
   block->brightness.resize(size);
   for (std::uint32_t i = 0; i < size; ++i) {
     block->range_m[i] = ranges_.range_m(time_s(first + i));
-    block->brightness[i] = light(block->range_m[i]);
+    const double nearer = start_range_m_ / block->range_m[i], squared = nearer * nearer;
+    block->brightness[i] = start_brightness_ * (squared * squared);
   }
 }
 

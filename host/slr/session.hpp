@@ -58,6 +58,7 @@ class Session {
   double wavelength_nm_ = 532.0;
   RangeModel ranges_;
   ShotSettings settings_;
+  double start_range_m_ = 0.0, start_brightness_ = 0.0;  // photons per m^2/sr there; they go with range^-4
   double start_s_ = 0.0;
   std::uint64_t shots_ = 0;
   bool in_order_ = false;                   ///< a dead time that reaches into the next shot's gate

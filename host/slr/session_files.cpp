@@ -101,7 +101,7 @@ ScatterPlot picture_of(const Session& session, const Station& station, double st
 }  // namespace
 
 static SessionSummary write_files(Session& session, const Result& result, const Scene& scene, const std::string& folder,
-                           const SessionOptions& options) {
+                                  const SessionOptions& options) {
   const Station& station = *scene.station;
   const std::uint64_t first = std::min(options.first_shot, session.shots() - 1);
   const std::uint64_t wanted = options.shots == 0 ? session.shots() : options.shots;
@@ -115,7 +115,8 @@ static SessionSummary write_files(Session& session, const Result& result, const 
                          range_rate(session, session.time_s(shot))};
   };
   CrdWriter crd(path + ".crd", header, supplement(first));
-  ScatterPlot picture = picture_of(session, station, session.time_s(first), session.time_s(last));
+  ScatterPlot picture =
+      picture_of(session, station, session.time_s(first), session.time_s(last) + 1.0 / station.rate_Hz);
   std::int64_t next_supplement = session.time_ps(first) + 60 * kPicosecondsPerSecond;
   const SessionSummary summary = session.run([&](const Shot& shot) {
     const bool signal = shot.kind == CLRAY_PHOTON_SIGNAL;

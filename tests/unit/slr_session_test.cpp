@@ -9,6 +9,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <glm/geometric.hpp>
 #include <sstream>
 
 #include "clray/error.hpp"
@@ -214,6 +215,54 @@ TEST_CASE("a million records in under 3 s, with flat memory") {
   CHECK(read_crd((folder.path / "observations.crd").string(), {}).ranges == 1000000);
   MESSAGE(
       "seconds to read them: " << std::chrono::duration<double>(std::chrono::steady_clock::now() - read_begin).count());
+}
+
+TEST_CASE("a session along a prediction: distances solved for, the prediction named in the CRD file") {
+  const Folder folder;
+  std::ofstream cpf(folder.path / "orbit.cpf");
+  cpf << "H1 CPF  2  CLR 2023 11 23  2  327 01 testsat\n"
+         "H2  7603901 1155     8820 2023 11 22 23 50  0 2023 11 23 23 55  0    60 1 1  0 0 0  1\nH9\n";
+  const auto orbit = [](double t) {
+    return Vec3(7.0e6 * std::cos(1e-3 * t), 4.2e6 * std::sin(1e-3 * t), 5.6e6 * std::sin(1e-3 * t));
+  };
+  for (int i = 0; i < 30; ++i) {
+    const Vec3 p = orbit(60.0 * i);
+    cpf << fmt::format("10 0 60270 {} 0 {:.6f} {:.6f} {:.6f}\n", 3600 + 60 * i, p.x, p.y, p.z);
+  }
+  cpf << "99\n";
+  cpf.close();
+  Pass pass(500.0, 10);
+  Station& station = *pass.scene.station;
+  station.cpf_file = (folder.path / "orbit.cpf").string();
+  station.position_m = Vec3(6.0e6, 1.0e6, 1.0e6);
+  pass.scene.motion->start_s = 0.0;
+  std::vector<CrdRange> ranges;
+  const auto begin = std::chrono::steady_clock::now();
+  const SessionSummary s = write_session(pass.result, pass.scene, folder.path.string(), without_picture());
+  MESSAGE("seconds for " << s.shots << " shots along a prediction: "
+                         << std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+  const CrdFile crd =
+      read_crd((folder.path / "observations.crd").string(), [&](const CrdRange& r) { ranges.push_back(r); });
+  CHECK(crd.header.target == "testsat");
+  CHECK(crd.header.cospar == "7603901");
+  CHECK(crd.header.prediction_type == 1);
+  CHECK(crd.header.prediction_year == "23");
+  CHECK(crd.header.prediction_date == "112302");
+  CHECK(crd.header.prediction_sequence == "32701");
+  CHECK(crd.header.start.ps == 3600 * kPicosecondsPerSecond);
+  REQUIRE(ranges.size() == s.signal + s.noise);
+  CHECK(crd.supplements.size() >= 8);
+  std::size_t outside = 0;
+  for (const CrdRange& r : ranges) {
+    const double t = static_cast<double>(r.epoch_ps) * 1e-12 - 3600.0;
+    double tau = 0.0;
+    for (int i = 0; i < 6; ++i) tau = glm::length(orbit(t + tau) - station.position_m) / 299792458.0;
+    // All flights lie within the gate around 2 tau (1 mm of distance is 7 ps).
+    outside += std::fabs(static_cast<double>(r.flight_ps) * 1e-12 - 2.0 * tau) > 0.5 * station.gate_s + 1e-11;
+  }
+  CHECK(outside == 0);
+  station.start_mjd = 60270.0 + 5000.0 / 86400.0;
+  CHECK_THROWS_WITH_AS(Session(pass.result, pass.scene, {}), doctest::Contains("outside the prediction"), Error);
 }
 
 TEST_CASE("one session for each variant, with the link budget in the summary") {
