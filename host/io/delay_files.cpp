@@ -208,10 +208,10 @@ void pulse_picture(Writer& writer, const DelayResult& delay, const std::string& 
   plot.line("set label 1 " + gnuplot_text(writer.title("delay", delay.key)) +
             " at screen 0.54, 0.97 center font ',19' textcolor '#000000'");
   plot.line("set label 2 " +
-            gnuplot_text("A = " + estimate(a, 1.0) + " m²/sr     σ = " + estimate(a, 4.0 * kPi) + " m²     mean " +
-                         estimate(delay.mean_delay_s, unit.per_second) + " " + unit.name + "     rms width " +
+            gnuplot_text("A = " + estimate(a, 1.0) + " m²/sr    σ = " + estimate(a, 4.0 * kPi) + " m²    mean " +
+                         estimate(delay.mean_delay_s, unit.per_second) + " " + unit.name + "    rms width " +
                          estimate(delay.rms_width_s, unit.per_second) + " " + unit.name) +
-            " at screen 0.54, 0.925 center font ',13.5' textcolor '#333333'");
+            " at screen 0.54, 0.925 center font ',12.5' textcolor '#333333'");
   plot.line("set xlabel 'delay after a path by way of the reference point (" + std::string(unit.name) + ")'");
   plot.line("set ylabel 'A(t)  (m² sr⁻¹ " + std::string(unit.name) + "⁻¹)' offset -0.5,0");
   const double end = curve.start + static_cast<double>(curve.value.size()) * curve.width;

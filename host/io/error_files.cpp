@@ -70,7 +70,7 @@ std::string log_tics(const std::string& axis, double low, double high) {
   std::string tics;
   const int first = static_cast<int>(std::floor(std::log10(low))) - 1,
             last = static_cast<int>(std::ceil(std::log10(high)));
-  const bool sparse = high / low > 300.0;
+  const bool sparse = high / low > 60.0;
   for (int power = first; power <= last; ++power) {
     for (const int mantissa : {1, 2, 5}) {
       if (sparse && mantissa != 1) continue;
@@ -111,8 +111,8 @@ void panel(Plot& plot, const std::string& column, const std::string& xlabel, Pla
              "title 'claimed standard error'";
   if (confirmed) {
     command += ", $confirmed using " + column +
-               ":3 with points pointtype 6 pointsize 2.4 linewidth 2 "
-               "linecolor '#c8511b' title 'confirmation: the result'";
+               ":3 with linespoints pointtype 6 pointsize 1.8 linewidth 1.4 "
+               "linecolor '#c8511b' title 'confirmation, last: result'";
   }
   if (truth) {
     command += ", $true using " + column +
@@ -156,7 +156,7 @@ void error_picture(Writer& writer, const std::vector<double>& truth) {
   plot.line("set logscale xy");
   plot.line("set grid xtics ytics mxtics mytics linecolor '#cccccc' linewidth 0.6, linecolor '#eeeeee' linewidth 0.4");
   plot.line(
-      "set key bottom left Left reverse; set ylabel 'error relative to the value' offset 1,0; set tmargin at screen "
+      "set key top right Left reverse; set ylabel 'error relative to the value' offset 1,0; set tmargin at screen "
       "0.9");
   const bool any_confirmed = !confirmed.points.empty(), any_truth = !true_error.points.empty();
   const std::vector<const Series*> all{&claimed, &confirmed, &true_error};
