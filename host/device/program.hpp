@@ -50,6 +50,6 @@ cl::Program build_source(OpenedDevice& opened, const std::string& entry, const s
                          bool warnings_are_errors, bool use_binary = false, bool* from_binary = nullptr);
 
 /// The options given to the OpenCL compiler.
-std::string build_flags(bool warnings_are_errors);
+std::string build_flags(const OpenedDevice& opened, bool warnings_are_errors);
 
 }  // namespace clray

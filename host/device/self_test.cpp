@@ -137,7 +137,7 @@ void run_self_test(OpenedDevice& opened, const KernelFiles& files) {
   for (std::size_t i = 0; i < kSums; ++i) {
     if (sums[i] != answers[i]) refuse(opened, "64-bit sum", static_cast<u64>(answers[i]), static_cast<u64>(sums[i]));
   }
-  if (opened.keeps_binaries && !from_binary) save_binary(opened, build_flags(false), source, program);
+  if (opened.keeps_binaries && !from_binary) save_binary(opened, build_flags(opened, false), source, program);
 }
 
 }  // namespace clray

@@ -52,7 +52,7 @@ std::uint32_t second_number(OpenedDevice& opened, const cl::Program& program) {
 TEST_CASE("a kept binary serves the same device, flags and source, and no other") {
   OpenedDevice opened = open_device(choose_devices(find_devices(), "cpu").front());
   const OwnCache cache;
-  const std::string flags = build_flags(false);
+  const std::string flags = build_flags(opened, false);
   CHECK_FALSE(load_binary(opened, flags, kSource));
   const cl::Program program = build_source(opened, "k", kSource, false);
   CHECK(second_number(opened, program) == 42);
@@ -71,7 +71,7 @@ TEST_CASE("a damaged binary is a miss, and the program builds from its source") 
   OpenedDevice opened = open_device(choose_devices(find_devices(), "cpu").front());
   const OwnCache cache;
   const cl::Program program = build_source(opened, "k", kSource, false);
-  save_binary(opened, build_flags(false), kSource, program);
+  save_binary(opened, build_flags(opened, false), kSource, program);
   opened.programs.clear();
   int files = 0;
   for (const auto& entry : fs::directory_iterator(cache.folder + "/clray")) {
