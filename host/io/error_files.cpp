@@ -151,12 +151,13 @@ void error_picture(Writer& writer, const std::vector<double>& truth) {
   claimed.data(plot, "claimed");
   confirmed.data(plot, "confirmed");
   true_error.data(plot, "true");
-  const auto& first = claimed.points.empty() ? confirmed.points.front() : claimed.points.front();
+  const auto& first = (claimed.points.size() < confirmed.points.size() ? confirmed : claimed).points.front();
   plot.line("set multiplot layout 1,2 title " + title + " font ',18'");
   plot.line("set logscale xy");
   plot.line("set grid xtics ytics mxtics mytics linecolor '#cccccc' linewidth 0.6, linecolor '#eeeeee' linewidth 0.4");
   plot.line(
-      "set key top right Left reverse; set ylabel 'error relative to the value' offset 1,0; set tmargin at screen "
+      "set key at screen 0.985, screen 0.945 right top horizontal maxrows 1 Left reverse nobox width -3 font ',13'; "
+      "set ylabel 'error relative to the value' offset 1,0; set tmargin at screen "
       "0.9");
   const bool any_confirmed = !confirmed.points.empty(), any_truth = !true_error.points.empty();
   const std::vector<const Series*> all{&claimed, &confirmed, &true_error};
