@@ -45,14 +45,14 @@ std::string program_source(const OpenedDevice& opened, const std::string& entry,
 
 std::string build_flags(const OpenedDevice& opened, bool warnings_are_errors) {
   std::string flags = "-cl-std=CL1.2";
-  if (!opened.optimises) flags += " -cl-opt-disable";
+  if (opened.no_optimiser) flags += " -cl-opt-disable";
   if (warnings_are_errors || std::getenv("CLRAY_KERNEL_WERROR")) flags += " -Werror";
   return flags;
 }
 
 cl::Program build_source(OpenedDevice& opened, const std::string& entry, const std::string& source,
                          bool warnings_are_errors, bool use_binary, bool* from_binary) {
-  const std::string flags = build_flags(opened, warnings_are_errors) + (opened.no_optimiser ? " -cl-opt-disable" : "");
+  const std::string flags = build_flags(opened, warnings_are_errors);
   const std::string key = flags + "\n" + source;
   const auto built = opened.programs.find(key);
   if (built != opened.programs.end()) return built->second;
