@@ -33,6 +33,7 @@ TEST_CASE("Lambert sphere's light curve: phase function and AB magnitude at ten 
     const double alpha = radians(degrees);
     clray::Scene scene = sunlit("sphere", {{"radius", radius}}, lambert(rho));
     bistatic(scene, toward(0.4), toward(0.4 + alpha));
+    if (degrees > 130.0) rays(scene, 23);  // only a thin crescent of the beam counts
     const clray::SpectrometerResult found = run(scene).spectrometer.at(0);
     const double exact = 2.0 * rho * radius * radius / 3.0 * lambert_phase(alpha);
     check_estimate(found.intensity_m2_per_sr, exact, degrees > 150.0 ? 5e-3 : kBound, "sphere");
@@ -71,7 +72,7 @@ TEST_CASE("spinning Lambert plate: cos^2 of its turn, orientation by orientation
     CHECK(at.source.x == doctest::Approx(-std::sin(turn)).epsilon(1e-12));
     CHECK(at.source.z == doctest::Approx(std::cos(turn)).epsilon(1e-12));
     const double mu = std::cos(turn);
-    check_estimate(found.intensity_m2_per_sr, 0.5 / kPi * 2.0 * mu * mu, kBound, "plate");
+    check_estimate(found.intensity_m2_per_sr, 0.5 / kPi * 2.0 * mu * mu, kBound, "plate", 1.0 / mu);
   }
 }
 

@@ -32,7 +32,7 @@ double weight_bound(const clray::Scene& scene, clray::Vec3 s, clray::Vec3 o) {
   return bound;
 }
 
-void compare(clray::Scene scene, clray::Vec3 s, clray::Vec3 o, bool same, Tally* tally, const char* what) {
+void compare(clray::Scene scene, clray::Vec3 s, clray::Vec3 o, bool same, Tally* tally, const std::string& what) {
   CAPTURE(what);
   CAPTURE(same);
   same ? monostatic(scene, s) : bistatic(scene, s, o);
@@ -53,6 +53,7 @@ void compare(clray::Scene scene, clray::Vec3 s, clray::Vec3 o, bool same, Tally*
   int wrong = 0;
   double worst = 0.0;
   ref::Real undecided = 0;
+  double rounding = 0.0;  // of the total: half a unit per hit, inside the window and out
   for (std::size_t i = 0; i < window.bins; ++i) {
     const double exact = static_cast<double>(h.bin[i]);
     const double slack = 1e-12 * exact +
@@ -62,6 +63,7 @@ void compare(clray::Scene scene, clray::Vec3 s, clray::Vec3 o, bool same, Tally*
     worst = std::max(worst, exact > 0.0 ? off / exact : 0.0);
     wrong += !(off <= slack);
     undecided += h.undecided[i];
+    rounding += static_cast<double>(h.hits[i]) * 0.5 * unit * static_cast<double>(h.sample_m2);
     if (h.undecided[i] == 0) wrong += found.hits[i] != h.hits[i];
   }
   CAPTURE(worst);
@@ -69,7 +71,8 @@ void compare(clray::Scene scene, clray::Vec3 s, clray::Vec3 o, bool same, Tally*
   CHECK(wrong == 0);
   const double total = static_cast<double>(h.total);
   CHECK(total > 0.0);
-  CHECK(std::fabs(found.intensity_m2_per_sr.value - total) <= kQuantum * total + static_cast<double>(undecided));
+  CHECK(std::fabs(found.intensity_m2_per_sr.value - total) <=
+        1e-12 * total + rounding + static_cast<double>(undecided));
 }
 
 clray::Scene box_wing(const clray::Material& bus, const clray::Material& wings) {
@@ -93,18 +96,21 @@ TEST_CASE("tracer and brute-force reference agree to rounding, bin by bin") {
     compare(scene_of(prism_mesh(48, 1.0, 3.0), shiny), s, o, same, &tally, "cylinder, A-S");
     compare(scene_of(prism_mesh(48, 1.0, 3.0), diffuse), back, o, same, &tally, "cylinder, Lambert");
     compare(box_wing(diffuse, sharp), s, o, same, &tally, "box-wing");
-    compare(box_wing(shiny, diffuse), back, o, same, &tally, "box-wing from behind");
+    compare(box_wing(shiny, diffuse), back, toward(1.9, 2.0), same, &tally, "box-wing from behind");
   }
   INFO("excluded ", tally.excluded, " of ", tally.samples);
   CHECK(static_cast<double>(tally.excluded) <= 1e-6 * static_cast<double>(tally.samples));
 }
 
 TEST_CASE("tracer and reference agree face-on, where delays pile up inside a bin") {
+  // The automatic window begins and ends bins on the faces of a symmetrical body; an odd number of bins does not.
   Tally tally;
   clray::Scene scene = scene_of(box_mesh(1.0, 1.0, 1.0), lambert(0.5));
+  window(scene, -4.1e-9, 4e-9, 63);
+  clray::Scene plate = scene_of(plate_mesh(2.0, 1.0), lambert(0.9));
   compare(scene, {0, 0, 1}, {0, 0, 1}, true, &tally, "box from +z");
   compare(scene, {0, 0, -1}, {0, 0, -1}, true, &tally, "box from -z");
-  compare(scene_of(plate_mesh(2.0, 1.0), lambert(0.9)), {0, 0, 1}, {0, 0, 1}, true, &tally, "plate from +z");
+  compare(window(plate, -4.1e-9, 4e-9, 63), {0, 0, 1}, {0, 0, 1}, true, &tally, "plate from +z");
   CHECK(tally.excluded <= 1);
 }
 

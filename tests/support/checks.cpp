@@ -9,24 +9,25 @@
 
 namespace clray_test {
 
-void check_component(double found, double standard_error, double exact, double scale, double bound, const char* what) {
+void check_component(double found, double standard_error, double exact, double scale, double bound,
+                     const std::string& what, double dim) {
   const double off = std::fabs(found - exact);
   INFO(what, ": found ", found, " +- ", standard_error, ", exact ", exact);
   CHECK(std::isfinite(found));
   CHECK(std::isfinite(standard_error));
-  CHECK(off <= 4.0 * standard_error + kQuantum * scale);
+  CHECK(off <= 4.0 * standard_error + kQuantum * dim * scale);
   CHECK(off <= bound * scale);
 }
 
-void check_estimate(const clray::Estimate& found, double exact, double bound, const char* what) {
-  check_component(found.value, found.standard_error, exact, std::fabs(exact), bound, what);
+void check_estimate(const clray::Estimate& found, double exact, double bound, const std::string& what, double dim) {
+  check_component(found.value, found.standard_error, exact, std::fabs(exact), bound, what, dim);
   INFO(what);
   CHECK(found.low <= found.value);
   CHECK(found.high >= found.value);
 }
 
 void check_bins(const clray::DelayResult& found, const Pulse& exact, std::uint64_t rays, int replicates, double beam_m2,
-                double largest_weight, const char* what) {
+                double largest_weight, const std::string& what) {
   const double floor = beam_m2 * largest_weight * replicates / static_cast<double>(rays);
   std::size_t far = 0;
   double worst = 0.0, sum = 0.0;
