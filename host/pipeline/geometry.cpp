@@ -176,7 +176,8 @@ class Packer {
       if (x.first != y.first) return x.first < y.first;
       const Raw &a = raw_[x.index], &b = raw_[y.index];
       if (const int order = compare(a, b)) return order < 0;
-      return material_rank[a.material] < material_rank[b.material];
+      if (a.material != b.material) return material_rank[a.material] < material_rank[b.material];
+      return a.component < b.component;
     });
     std::vector<Raw> sorted;
     sorted.reserve(raw_.size());
