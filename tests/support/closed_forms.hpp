@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Exact answers for tests and benchmarks. Nothing here comes from kernels/ or host/: single scattering A = ∫ f μ_i μ_o dA worked out by hand (PHYSICS section 1) and, for convex
-// polyhedra, facet by facet. m, s, sr.
+// Exact answers for tests and benchmarks. Nothing here comes from kernels/ or host/: single scattering A = ∫ f μ_i μ_o
+// dA worked out by hand (PHYSICS section 1) and, for convex polyhedra, facet by facet. m, s, sr.
 #pragma once
 
 #include <functional>
