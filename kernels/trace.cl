@@ -29,12 +29,12 @@ __kernel void clray_trace(const __global ClrayPass *pass, const __global ClrayVi
                           const __global ClrayPrimitive *primitives, const __global f64 *shapes,
                           const __global ClrayInstance *instances, const __global ClrayMaterial *materials,
                           const __global f64 *tables, const __global u32 *directions, const __global ClrayDelay *delays,
-                          volatile __global i64 *sums, volatile __global i64 *wide, volatile __global u32 *hits,
+                          const __global u32 *cells, volatile __global i64 *sums, volatile __global i64 *wide, volatile __global u32 *hits,
                           volatile __global i64 *counters, u64 first_item, u32 items, u32 first_point, u32 points,
                           u32 chunk) {
   if (get_global_id(0) >= items) return;
   const Buffers g = {pass,   views,      connections, nodes, primitives, shapes, instances, materials,
-                     tables, directions, delays,      sums,  wide,       hits,   counters};
+                     tables, directions, delays,      cells, sums,       wide,   hits,      counters};
   const u32 chunks = (points + chunk - 1u) / max(chunk, 1u);
   u64 item = first_item + get_global_id(0);
   const u32 begin = (u32)(item % max(chunks, 1u)) * chunk;

@@ -74,13 +74,13 @@ class Packer {
 
  private:
   void make_parts() {
-    part_of_.assign(scene_.components.size(), 0);
+    g_.part_of_component.assign(scene_.components.size(), 0);
     const bool any_static = std::any_of(scene_.components.begin(), scene_.components.end(),
                                         [](const Component& c) { return !c.hinge; });
     if (any_static) g_.parts.emplace_back();
     for (std::size_t c = 0; c < scene_.components.size(); ++c) {
       if (!scene_.components[c].hinge) continue;
-      part_of_[c] = static_cast<std::uint32_t>(g_.parts.size());
+      g_.part_of_component[c] = static_cast<std::uint32_t>(g_.parts.size());
       g_.parts.emplace_back();
       g_.parts.back().hinged_component = static_cast<int>(c);
     }
@@ -96,7 +96,7 @@ class Packer {
     raw.size = 9;
     raw.shape = static_cast<std::uint32_t>(table_index("shape", "mesh"));
     raw.component = index;
-    raw.part = part_of_[index];
+    raw.part = g_.part_of_component[index];
     std::vector<std::uint8_t> used(points.size(), 0);
     numbers_.reserve(numbers_.size() + 9 * mesh.triangles.size());
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -138,7 +138,7 @@ class Packer {
     if (row < 0) throw Error(ErrorCode::input, "unknown shape \"" + component.shape + "\"", component.name);
     raw.shape = static_cast<std::uint32_t>(row);
     raw.component = index;
-    raw.part = part_of_[index];
+    raw.part = g_.part_of_component[index];
     raw.material = component.materials.at(0);
     raw.data = static_cast<std::uint32_t>(numbers_.size());
     const std::array<double, 9> m = rotation_about(component.transform.axis, component.transform.angle_rad);
@@ -223,7 +223,7 @@ class Packer {
   }
 
   void build_trees() {
-    const int mesh_row = table_index("shape", "mesh");
+    g_.mesh_row = table_index("shape", "mesh");
     std::vector<bool> used(table("shape").size(), false);
     for (std::uint32_t p = 0; p < g_.parts.size(); ++p) {
       std::vector<std::uint32_t> members;
@@ -241,7 +241,7 @@ class Packer {
       g_.parts[p].root = first_node;
       g_.parts[p].frame = tree.frame;
       g_.stack_needed = std::max(g_.stack_needed, tree.stack_needed);
-      for (const std::uint32_t position : tree.order) append(raw_[members[position]], members[position], used, mesh_row);
+      for (const std::uint32_t position : tree.order) append(raw_[members[position]], members[position], used);
       append_nodes(tree, first_node, first_primitive);
     }
     for (std::size_t row = 0; row < used.size(); ++row) {
@@ -249,7 +249,7 @@ class Packer {
     }
   }
 
-  void append(const Raw& raw, std::uint32_t id, std::vector<bool>& used, int mesh_row) {
+  void append(const Raw& raw, std::uint32_t id, std::vector<bool>& used) {
     ClrayPrimitive primitive{};
     primitive.shape = raw.shape;
     primitive.data = static_cast<std::uint32_t>(g_.shapes.size());
@@ -257,7 +257,7 @@ class Packer {
     primitive.id = id;
     primitive.component = raw.component;
     const double* d = numbers_.data() + raw.data;
-    if (static_cast<int>(raw.shape) == mesh_row) {
+    if (static_cast<int>(raw.shape) == g_.mesh_row) {
       primitive.flags = CLRAY_PRIMITIVE_PLANE;
     } else {
       if (shape_traits_of(static_cast<int>(raw.shape), d + CLRAY_SHAPE_KEYS) & CLRAY_SHAPE_PLANE)
@@ -315,7 +315,6 @@ class Packer {
 
   const Scene& scene_;
   Geometry g_;
-  std::vector<std::uint32_t> part_of_;
   std::vector<Raw> raw_;
   std::vector<double> numbers_;
 };

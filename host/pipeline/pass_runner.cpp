@@ -59,6 +59,7 @@ struct PassRunner::OnDevice {
     keep(plan.surfaces.tables);
     keep(sobol_directions_reversed());
     keep(plan.delay_rows);
+    keep(plan.cells);
     cl_uint index = 0;
     const auto set = [&](const cl::Buffer& buffer) { kernel.setArg(index++, buffer); };
     with_cl_errors(opened.info.name, [&] {
@@ -99,11 +100,11 @@ struct PassRunner::OnDevice {
   void launch_items(std::uint64_t first, std::uint32_t items, std::uint32_t first_point, std::uint32_t points,
                     std::uint32_t chunk, std::uint32_t group) {
     with_cl_errors(opened.info.name, [&] {
-      kernel.setArg(15, static_cast<cl_ulong>(first));
-      kernel.setArg(16, static_cast<cl_uint>(items));
-      kernel.setArg(17, static_cast<cl_uint>(first_point));
-      kernel.setArg(18, static_cast<cl_uint>(points));
-      kernel.setArg(19, static_cast<cl_uint>(chunk));
+      kernel.setArg(16, static_cast<cl_ulong>(first));
+      kernel.setArg(17, static_cast<cl_uint>(items));
+      kernel.setArg(18, static_cast<cl_uint>(first_point));
+      kernel.setArg(19, static_cast<cl_uint>(points));
+      kernel.setArg(20, static_cast<cl_uint>(chunk));
     });
     launch(opened, kernel, items, group);
     finish(opened);

@@ -247,6 +247,11 @@ void Planner::specialise() {
          "no component is hinged; fixed transforms are done once on the host");
   decide("CLRAY_WIDE", p_.scatter || bistatic || !only_lambert, "second accumulator",
          "weights may exceed the bound of a first bounce", "weights of a Lambert surface are bounded");
+  p_.options.defines["CLRAY_CELLS"] = p_.cells.empty() ? "0" : "1";
+  if (!p_.cells.empty()) {
+    p_.kept.push_back("beam cells in order of delay: the Sobol sampler, stratified over the body's silhouette");
+    p_.left_out.push_back("rays beside the body: cells of the beam's rectangle that nothing projects into");
+  }
   decide("CLRAY_TRIANGLES", triangles, "triangle test", "a mesh is in the scene", "no mesh in the scene");
   decide("CLRAY_ANALYTIC", analytic, "analytic shapes", "in the scene", "the scene is made of triangles");
   decide("CLRAY_PRESSURE", p_.pressure, "momentum and torque", "the pressure detector", "no pressure detector");

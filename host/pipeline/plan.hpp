@@ -46,7 +46,8 @@ struct PassPlan {
   int scale_bits = 0;                     ///< S of weights
   double path_low_m = 0.0, path_high_m = 0.0;
   double lever_m = 1.0;                   ///< power of two that levers are divided by
-  std::vector<double> area_m2;            ///< of the beam rectangle, per view
+  std::vector<double> area_m2;            ///< that a view's rays cover: of its beam's cells, or of a pixel
+  std::vector<std::uint32_t> cells;       ///< of all views, see silhouette.hpp
 
   ClrayPass constants{};
   std::vector<ClrayView> views;

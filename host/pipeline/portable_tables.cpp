@@ -28,6 +28,11 @@ double shape_support_of(int shape, const double* keys, const double direction[3]
   return portable::shape_support(static_cast<u32>(shape), keys, v3(direction[0], direction[1], direction[2]));
 }
 
+bool shape_hit_of(int shape, const double* keys, vec3 o, vec3 d, double* t) {
+  u32 part;
+  return portable::shape_intersect(static_cast<u32>(shape), keys, o, d, HUGE_VAL, t, &part) != 0;
+}
+
 double shape_area_of(int shape, const double* keys) {
   return portable::shape_area(static_cast<u32>(shape), keys);
 }

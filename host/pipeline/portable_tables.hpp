@@ -17,6 +17,8 @@ double surface_bound(const ClrayMaterial& material, const std::vector<double>& t
 
 /// max over the shape of x·direction in its local frame, m. `keys`: the row's values in order.
 double shape_support_of(int shape, const double* keys, const double direction[3]);
+/// Nearest hit of the local ray o + t·d with t > 0: true and t.
+bool shape_hit_of(int shape, const double* keys, vec3 o, vec3 d, double* t);
 /// Area of one side, m².
 double shape_area_of(int shape, const double* keys);
 /// CLRAY_SHAPE_CLOSED | CLRAY_SHAPE_CONVEX | CLRAY_SHAPE_PLANE

@@ -65,6 +65,9 @@ typedef struct ClrayView {
   f64 box_scale;
   u32 root;               // of the top-level BVH (or of the only one)
   u32 first_instance;
+  u32 first_cell, cells;  // slots of the beam's rectangle that the body can be in; 0: all of it
+  u32 grid;               // cells along each edge of the rectangle
+  u32 padding;
 } ClrayView;
 
 /// One direction to which hits are connected in one view: an observer for a beam, the source for pixels.
@@ -133,7 +136,7 @@ typedef struct ClrayPass {
 
 // Sizes, asserted in C++ here and on the device by the start-up self-test.
 #define CLRAY_SIZES(X) \
-  X(ClrayMaterial, 120) X(ClrayPrimitive, 24) X(ClrayNode, 112) X(ClrayInstance, 136) X(ClrayView, 136) \
+  X(ClrayMaterial, 120) X(ClrayPrimitive, 24) X(ClrayNode, 112) X(ClrayInstance, 136) X(ClrayView, 152) \
   X(ClrayConnection, 48) X(ClrayDelay, 40) X(ClrayPass, 136)
 #ifdef __cplusplus
 #define CLRAY_ASSERT_SIZE(type, size) static_assert(sizeof(type) == size, "abi.h: " #type);

@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: Apache-2.0
+// Cells of the beam (see silhouette.hpp): a conservative rasteriser with a depth buffer. Lengths in m, in the beam's
+// axes (u, v, toward the source).
+#include "pipeline/silhouette.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "pipeline/portable_tables.hpp"
+
+namespace clray {
+namespace {
+
+constexpr std::uint64_t kMostTests = 1ull << 27;  // of a cell against a primitive: about a second
+constexpr int kDirections = 32;                   // half-planes that bound an analytic shape's silhouette
+constexpr double kMostSlots = 64.0;               // of a cell: costs at most 6 of the sums' 38 bits
+constexpr double kPathSteps = 1024.0;             // cells whose paths differ by less than 1/1024 are neighbours
+
+/// One primitive's corner in the beam's axes.
+struct Corner {
+  double u, v, w, path;
+};
+
+class Rasteriser {
+ public:
+  Rasteriser(const Geometry& geometry, const std::vector<RigidMotion>& motions, const BeamGrid& grid)
+      : geometry_(geometry), motions_(motions), grid_(grid), n_(grid.cells) {
+    const std::size_t count = static_cast<std::size_t>(n_) * n_;
+    depth_.assign(count, -1e300);
+    path_.assign(count, 0.0);
+    state_.assign(count, 0);
+    cell_u_ = grid.size_u / n_;
+    cell_v_ = grid.size_v / n_;
+    // More than all rounding between here and the device's ray.
+    margin_ = 1e-9 * (grid.size_u + grid.size_v) +
+              1e-14 * (std::fabs(grid.u0) + std::fabs(grid.v0) + geometry.radius);
+  }
+
+  std::vector<std::uint32_t> cells() {
+    for (std::size_t k = 0; k < geometry_.primitives.size(); ++k) {
+      const ClrayPrimitive& primitive = geometry_.primitives[k];
+      const double* data = geometry_.shapes.data() + primitive.data;
+      const RigidMotion& motion = motions_[geometry_.part_of_component[primitive.component]];
+      if (static_cast<int>(primitive.shape) == geometry_.mesh_row) {
+        triangle(corner(motion, data), corner(motion, data + 3), corner(motion, data + 6));
+      } else {
+        shape(primitive, motion, data);
+      }
+      if (tests_ > kMostTests) return {};
+    }
+    return sorted();
+  }
+
+ private:
+  Corner beam(const vec3& x) const {
+    return {v3_dot(grid_.u, x), v3_dot(grid_.v, x), v3_dot(grid_.toward, x), -v3_dot(grid_.path, x)};
+  }
+
+  /// A point of a part, in the beam's axes.
+  Corner corner(const RigidMotion& motion, const double* x) const {
+    const double p[3] = {x[0] - motion.translation[0], x[1] - motion.translation[1], x[2] - motion.translation[2]};
+    const std::array<double, 9>& m = motion.rotation;
+    return beam(v3(m[0] * p[0] + m[3] * p[1] + m[6] * p[2], m[1] * p[0] + m[4] * p[1] + m[7] * p[2],
+                   m[2] * p[0] + m[5] * p[1] + m[8] * p[2]));
+  }
+
+  int column(double u) const { return clamp_cell((u - grid_.u0) / cell_u_); }
+  int row(double v) const { return clamp_cell((v - grid_.v0) / cell_v_); }
+  int clamp_cell(double x) const {
+    return static_cast<int>(std::clamp(std::floor(x), 0.0, static_cast<double>(n_ - 1)));
+  }
+
+  void mark(std::size_t cell, bool centre, double depth, double path) {
+    const std::uint8_t state = centre ? 2 : 1;
+    if (state < state_[cell] || (state == state_[cell] && depth <= depth_[cell])) return;
+    state_[cell] = state;
+    depth_[cell] = depth;
+    path_[cell] = path;
+  }
+
+  void triangle(const Corner& a, const Corner& b, const Corner& c) {
+    const double low_u = std::min({a.u, b.u, c.u}) - margin_, high_u = std::max({a.u, b.u, c.u}) + margin_;
+    const double low_v = std::min({a.v, b.v, c.v}) - margin_, high_v = std::max({a.v, b.v, c.v}) + margin_;
+    const int i0 = column(low_u), i1 = column(high_u), j0 = row(low_v), j1 = row(high_v);
+    tests_ += static_cast<std::uint64_t>(i1 - i0 + 1) * static_cast<std::uint64_t>(j1 - j0 + 1);
+    if (tests_ > kMostTests) return;
+    const Corner* p[3] = {&a, &b, &c};
+    struct Axis {
+      double x, y, low, high, half;
+    } axes[3];
+    for (int k = 0; k < 3; ++k) {
+      const Corner &from = *p[k], &to = *p[(k + 1) % 3];
+      Axis& axis = axes[k];
+      axis.x = from.v - to.v;
+      axis.y = to.u - from.u;
+      double low = 1e300, high = -1e300;
+      for (const Corner* q : p) {
+        const double d = axis.x * q->u + axis.y * q->v;
+        low = std::min(low, d);
+        high = std::max(high, d);
+      }
+      const double slack = margin_ * (std::fabs(axis.x) + std::fabs(axis.y));
+      axis.low = low - slack;
+      axis.high = high + slack;
+      axis.half = 0.5 * (std::fabs(axis.x) * cell_u_ + std::fabs(axis.y) * cell_v_);
+    }
+    const double area = (b.u - a.u) * (c.v - a.v) - (b.v - a.v) * (c.u - a.u);
+    const double depth = (a.w + b.w + c.w) / 3.0, path = (a.path + b.path + c.path) / 3.0;
+    for (int j = j0; j <= j1; ++j) {
+      for (int i = i0; i <= i1; ++i) {
+        const double u = grid_.u0 + (i + 0.5) * cell_u_, v = grid_.v0 + (j + 0.5) * cell_v_;
+        bool apart = false;
+        for (const Axis& axis : axes) {
+          const double d = axis.x * u + axis.y * v;
+          apart = apart || d + axis.half < axis.low || d - axis.half > axis.high;
+        }
+        if (apart) continue;
+        const std::size_t cell = static_cast<std::size_t>(j) * n_ + i;
+        const double x = (u - a.u) * (c.v - a.v) - (v - a.v) * (c.u - a.u);
+        const double y = (b.u - a.u) * (v - a.v) - (b.v - a.v) * (u - a.u);
+        const double s = x / area, t = y / area;
+        if (area != 0.0 && s >= 0.0 && t >= 0.0 && s + t <= 1.0) {
+          mark(cell, true, a.w + s * (b.w - a.w) + t * (c.w - a.w), a.path + s * (b.path - a.path) + t * (c.path - a.path));
+        } else {
+          mark(cell, false, depth, path);
+        }
+      }
+    }
+  }
+
+  // A shape's silhouette lies in the half-planes that its support function gives; its depth comes from its own ray test.
+  void shape(const ClrayPrimitive& primitive, const RigidMotion& motion, const double* data) {
+    const std::array<double, 9>& m = motion.rotation;
+    const auto to_local = [&](const vec3& d) {  // direction: beam/body -> part -> shape
+      const double p[3] = {m[0] * d.x + m[1] * d.y + m[2] * d.z, m[3] * d.x + m[4] * d.y + m[5] * d.z,
+                           m[6] * d.x + m[7] * d.y + m[8] * d.z};
+      return v3(data[0] * p[0] + data[1] * p[1] + data[2] * p[2], data[3] * p[0] + data[4] * p[1] + data[5] * p[2],
+                data[6] * p[0] + data[7] * p[1] + data[8] * p[2]);
+    };
+    const Corner origin = corner(motion, data + CLRAY_SHAPE_ORIGIN);
+    const double scale = data[CLRAY_SHAPE_SCALE];
+    struct HalfPlane {
+      double x, y, high, half;
+    } planes[kDirections];
+    for (int k = 0; k < kDirections; ++k) {
+      // Directions need not be even: the points of a square's edge will do, and need no trigonometry.
+      const double f = 8.0 * k / kDirections;
+      const int side = static_cast<int>(f) / 2;
+      const double g = f - 2.0 * side - 1.0;
+      const double x = side == 0 ? 1.0 : side == 1 ? -g : side == 2 ? -1.0 : g;
+      const double y = side == 0 ? g : side == 1 ? 1.0 : side == 2 ? -g : -1.0;
+      const vec3 local = to_local(v3_fma(x, grid_.u, v3_scale(y, grid_.v)));
+      const double direction[3] = {local.x, local.y, local.z};
+      HalfPlane& plane = planes[k];
+      plane.x = x;
+      plane.y = y;
+      plane.high = x * origin.u + y * origin.v +
+                   scale * shape_support_of(static_cast<int>(primitive.shape), data + CLRAY_SHAPE_KEYS, direction) +
+                   2.0 * margin_;
+      plane.half = 0.5 * (std::fabs(x) * cell_u_ + std::fabs(y) * cell_v_);
+    }
+    tests_ += static_cast<std::uint64_t>(n_) * n_ * 4;
+    const vec3 d = to_local(v3_neg(grid_.toward)), lu = to_local(grid_.u), lv = to_local(grid_.v);
+    for (std::uint32_t j = 0; j < n_; ++j) {
+      for (std::uint32_t i = 0; i < n_; ++i) {
+        const double u = grid_.u0 + (i + 0.5) * cell_u_, v = grid_.v0 + (j + 0.5) * cell_v_;
+        bool apart = false;
+        for (const HalfPlane& plane : planes) {
+          apart = plane.x * u + plane.y * v - plane.half > plane.high;
+          if (apart) break;
+        }
+        if (apart) continue;
+        const double start = 4.0 * geometry_.radius / scale;
+        const vec3 o = v3_fma((u - origin.u) / scale, lu, v3_fma((v - origin.v) / scale, lv, v3_scale(-start, d)));
+        double t;
+        if (shape_hit_of(static_cast<int>(primitive.shape), data + CLRAY_SHAPE_KEYS, o, d, &t)) {
+          const double w = origin.w + scale * (start - t);
+          mark(static_cast<std::size_t>(j) * n_ + i, true, w, path_of(u, v, w));
+        } else {
+          mark(static_cast<std::size_t>(j) * n_ + i, false, origin.w, path_of(u, v, origin.w));
+        }
+      }
+    }
+  }
+
+  double path_of(double u, double v, double w) const {
+    return -(u * v3_dot(grid_.path, grid_.u) + v * v3_dot(grid_.path, grid_.v) + w * v3_dot(grid_.path, grid_.toward));
+  }
+
+  static std::uint32_t interleave(std::uint32_t x) {
+    x = (x | x << 8) & 0x00ff00ffu;
+    x = (x | x << 4) & 0x0f0f0f0fu;
+    x = (x | x << 2) & 0x33333333u;
+    return (x | x << 1) & 0x55555555u;
+  }
+
+  std::vector<std::uint32_t> sorted() const {
+    struct Key {
+      std::int64_t step;
+      std::uint32_t morton, cell;
+    };
+    std::vector<Key> keys;
+    const double step = 4.0 * geometry_.radius / kPathSteps;
+    for (std::uint32_t cell = 0; cell < state_.size(); ++cell) {
+      if (state_[cell] == 0) continue;
+      keys.push_back({static_cast<std::int64_t>(std::floor(path_[cell] / step)),
+                      interleave(cell % n_) | interleave(cell / n_) << 1, cell});
+    }
+    std::sort(keys.begin(), keys.end(), [](const Key& a, const Key& b) {
+      return a.step != b.step ? a.step < b.step : a.morton < b.morton;
+    });
+    // Half of the slots go to all cells alike, half to all steps of path alike: rare delays get their share of rays.
+    std::vector<std::uint32_t> slots;
+    std::size_t steps = 0;
+    for (std::size_t k = 0; k < keys.size(); ++k) steps += k == 0 || keys[k].step != keys[k - 1].step;
+    for (std::size_t first = 0; first < keys.size();) {
+      std::size_t last = first;
+      while (last < keys.size() && keys[last].step == keys[first].step) ++last;
+      const double share = static_cast<double>(keys.size()) / (static_cast<double>(steps) * static_cast<double>(last - first));
+      const auto count = static_cast<std::uint32_t>(std::min(1.0 + std::floor(share), kMostSlots));
+      for (; first < last; ++first) {
+        for (std::uint32_t k = 0; k < count; ++k) {
+          slots.push_back(keys[first].cell);
+          slots.push_back(k << 16 | count);
+        }
+      }
+    }
+    return slots;
+  }
+
+  const Geometry& geometry_;
+  const std::vector<RigidMotion>& motions_;
+  const BeamGrid& grid_;
+  std::uint32_t n_;
+  double cell_u_ = 0.0, cell_v_ = 0.0, margin_ = 0.0;
+  std::uint64_t tests_ = 0;
+  std::vector<double> depth_, path_;
+  std::vector<std::uint8_t> state_;  // 0 empty, 1 touched, 2 its centre covered
+};
+
+}  // namespace
+
+std::uint32_t grid_cells(std::size_t views) {
+  std::uint32_t cells = 512;
+  while (cells > 8 && static_cast<std::uint64_t>(views) * cells * cells > 1u << 18) cells /= 2;
+  return cells;
+}
+
+std::vector<std::uint32_t> silhouette_cells(const Geometry& geometry, const std::vector<RigidMotion>& motions,
+                                            const BeamGrid& grid) {
+  return Rasteriser(geometry, motions, grid).cells();
+}
+
+}  // namespace clray
