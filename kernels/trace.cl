@@ -43,9 +43,9 @@ __kernel void clray_trace(const __global ClrayPass *pass, const __global ClrayVi
   tally.replicate = (u32)(item % max(pass->replicates, 1u));
   item /= max(pass->replicates, 1u);
 #if CLRAY_PIXELS
-  const u64 pixels = max((u64)pass->width * pass->height, (u64)1);
-  tally.stream = 1u + (u32)(item % pixels);
-  item /= pixels;
+  const u64 pixels = (u64)pass->width * pass->height;
+  tally.stream = 1u + (u32)(item % max(pixels, (u64)1));
+  item /= max(pixels, (u64)1);
 #else
   tally.stream = 0u;
 #endif

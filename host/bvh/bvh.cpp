@@ -44,7 +44,9 @@ float round_down(double x) {
   const float low = -std::numeric_limits<float>::infinity();
   return std::nextafter(static_cast<double>(f) > x ? std::nextafter(f, low) : f, low);
 }
-float round_up(double x) { return -round_down(-x); }
+float round_up(double x) {
+  return -round_down(-x);
+}
 
 class Builder {
  public:
@@ -263,6 +265,8 @@ void Box::add(const Box& box) {
   add(box.high);
 }
 
-LinearBvh build_bvh(const std::vector<Box>& boxes) { return Builder(boxes).build(); }
+LinearBvh build_bvh(const std::vector<Box>& boxes) {
+  return Builder(boxes).build();
+}
 
 }  // namespace clray

@@ -31,9 +31,9 @@ struct BoxFrame {
 
 struct LinearBvh {
   BoxFrame frame;
-  std::vector<ClrayNode> nodes;       ///< children's indices count from the start of this vector; [0] is the root
-  std::vector<std::uint32_t> order;   ///< leaf position -> index of the box; leaves hold positions
-  std::uint32_t stack_needed = 1;     ///< entries that a walk can need at most
+  std::vector<ClrayNode> nodes;      ///< children's indices count from the start of this vector; [0] is the root
+  std::vector<std::uint32_t> order;  ///< leaf position -> index of the box; leaves hold positions
+  std::uint32_t stack_needed = 1;    ///< entries that a walk can need at most
   std::uint32_t depth = 0;
 };
 

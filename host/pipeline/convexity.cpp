@@ -20,13 +20,15 @@ constexpr double kFlat = 1e-14;
 
 using Point = std::array<double, 3>;
 
-vec3 sub(const Point& a, const Point& b) { return v3(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
+vec3 sub(const Point& a, const Point& b) {
+  return v3(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+}
 
 struct Edge {
-  std::uint32_t low, high;   // vertex numbers
+  std::uint32_t low, high;  // vertex numbers
   std::uint32_t triangle;
-  std::uint32_t opposite;    // the triangle's third vertex
-  bool forward;              // low -> high in the triangle's winding
+  std::uint32_t opposite;  // the triangle's third vertex
+  bool forward;            // low -> high in the triangle's winding
   bool operator<(const Edge& o) const { return low != o.low ? low < o.low : high < o.high; }
 };
 
@@ -41,7 +43,8 @@ bool convex_triangles(const std::vector<double>& triangles) {
   const std::size_t count = triangles.size() / 9;
   if (count == 0 || count > kMostTriangles) return false;
   std::vector<Point> points(3 * count);
-  for (std::size_t k = 0; k < 3 * count; ++k) points[k] = {{triangles[3 * k], triangles[3 * k + 1], triangles[3 * k + 2]}};
+  for (std::size_t k = 0; k < 3 * count; ++k)
+    points[k] = {{triangles[3 * k], triangles[3 * k + 1], triangles[3 * k + 2]}};
   const auto normal = [&](std::size_t t) {
     return v3_cross(sub(points[3 * t + 1], points[3 * t]), sub(points[3 * t + 2], points[3 * t]));
   };
@@ -80,8 +83,8 @@ bool convex_triangles(const std::vector<double>& triangles) {
     if (!pair || third) return false;
     if (beyond(a.triangle, distinct[b.opposite]) > 0.0 || beyond(b.triangle, distinct[a.opposite]) > 0.0) return false;
     // Folded flat onto itself: the far vertex is level but on the same side of the edge.
-    if (v3_dot(normal(a.triangle), normal(b.triangle)) <= 0.0 &&
-        beyond(a.triangle, distinct[b.opposite]) == 0.0) return false;
+    if (v3_dot(normal(a.triangle), normal(b.triangle)) <= 0.0 && beyond(a.triangle, distinct[b.opposite]) == 0.0)
+      return false;
     parent[find_root(parent, a.triangle)] = find_root(parent, b.triangle);
   }
   for (std::uint32_t t = 0; t < count; ++t) {

@@ -19,8 +19,8 @@ namespace {
 
 /// A primitive before it has its place: nine numbers of a triangle, or a shape's record.
 struct Raw {
-  std::uint32_t data = 0;      // offset in numbers
-  std::uint32_t size = 0;      // how many
+  std::uint32_t data = 0;  // offset in numbers
+  std::uint32_t size = 0;  // how many
   std::uint32_t shape = 0, material = 0, component = 0, part = 0;
 };
 
@@ -37,9 +37,9 @@ std::array<double, 9> rotation_about(const Vec3& axis, double angle) {
   el_sincos(angle, &s, &c);
   const double l = std::sqrt(std::fma(axis.x, axis.x, std::fma(axis.y, axis.y, axis.z * axis.z)));
   const double x = axis.x / l, y = axis.y / l, z = axis.z / l, k = 1.0 - c;
-  return {{std::fma(k * x, x, c), std::fma(k * x, y, -s * z), std::fma(k * x, z, s * y),
-           std::fma(k * x, y, s * z), std::fma(k * y, y, c), std::fma(k * y, z, -s * x),
-           std::fma(k * x, z, -s * y), std::fma(k * y, z, s * x), std::fma(k * z, z, c)}};
+  return {{std::fma(k * x, x, c), std::fma(k * x, y, -s * z), std::fma(k * x, z, s * y), std::fma(k * x, y, s * z),
+           std::fma(k * y, y, c), std::fma(k * y, z, -s * x), std::fma(k * x, z, -s * y), std::fma(k * y, z, s * x),
+           std::fma(k * z, z, c)}};
 }
 
 Point to_body(const Transform& transform, const std::array<double, 9>& rotation, const Vec3& v) {
@@ -75,8 +75,8 @@ class Packer {
  private:
   void make_parts() {
     g_.part_of_component.assign(scene_.components.size(), 0);
-    const bool any_static = std::any_of(scene_.components.begin(), scene_.components.end(),
-                                        [](const Component& c) { return !c.hinge; });
+    const bool any_static =
+        std::any_of(scene_.components.begin(), scene_.components.end(), [](const Component& c) { return !c.hinge; });
     if (any_static) g_.parts.emplace_back();
     for (std::size_t c = 0; c < scene_.components.size(); ++c) {
       if (!scene_.components[c].hinge) continue;
@@ -321,7 +321,9 @@ class Packer {
 
 }  // namespace
 
-Geometry build_geometry(const Scene& scene) { return Packer(scene).pack(); }
+Geometry build_geometry(const Scene& scene) {
+  return Packer(scene).pack();
+}
 
 RigidMotion part_motion(const Scene& scene, const Part& part, const Vec3& source, const Vec3& observer) {
   RigidMotion motion;
@@ -335,8 +337,8 @@ RigidMotion part_motion(const Scene& scene, const Part& part, const Vec3& source
   return motion;
 }
 
-void body_extent(const Geometry& geometry, const std::vector<RigidMotion>& motions, const Point& direction,
-                 double* low, double* high) {
+void body_extent(const Geometry& geometry, const std::vector<RigidMotion>& motions, const Point& direction, double* low,
+                 double* high) {
   *low = 1e300;
   *high = -1e300;
   for (std::size_t p = 0; p < geometry.parts.size(); ++p) {
@@ -354,8 +356,9 @@ void body_extent(const Geometry& geometry, const std::vector<RigidMotion>& motio
       const double* d = geometry.shapes.data() + part.shapes[k];
       const std::array<double, 9> m{{d[0], d[1], d[2], d[3], d[4], d[5], d[6], d[7], d[8]}};
       const Point local = rotated(m, u), away{{-local[0], -local[1], -local[2]}};
-      const double origin = std::fma(u[0], d[CLRAY_SHAPE_ORIGIN], std::fma(u[1], d[CLRAY_SHAPE_ORIGIN + 1],
-                                                                           u[2] * d[CLRAY_SHAPE_ORIGIN + 2])) - shift;
+      const double origin = std::fma(u[0], d[CLRAY_SHAPE_ORIGIN],
+                                     std::fma(u[1], d[CLRAY_SHAPE_ORIGIN + 1], u[2] * d[CLRAY_SHAPE_ORIGIN + 2])) -
+                            shift;
       const double scale = d[CLRAY_SHAPE_SCALE];
       const int row = part.shape_rows[k];
       *high = std::max(*high, std::fma(scale, shape_support_of(row, d + CLRAY_SHAPE_KEYS, local.data()), origin));

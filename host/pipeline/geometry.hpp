@@ -18,13 +18,13 @@ using Point = std::array<double, 3>;
 
 /// A set of primitives that move together.
 struct Part {
-  int hinged_component = -1;         ///< -1: static
-  std::uint32_t root = 0;            ///< in Geometry::nodes
+  int hinged_component = -1;  ///< -1: static
+  std::uint32_t root = 0;     ///< in Geometry::nodes
   BoxFrame frame;
-  Box box;                           ///< in the part's frame (hinge at angle 0)
-  std::vector<Point> points;         ///< vertices of its triangles
-  std::vector<std::uint32_t> shapes; ///< offsets in Geometry::shapes of its analytic shapes
-  std::vector<int> shape_rows;       ///< their rows in shape.def
+  Box box;                            ///< in the part's frame (hinge at angle 0)
+  std::vector<Point> points;          ///< vertices of its triangles
+  std::vector<std::uint32_t> shapes;  ///< offsets in Geometry::shapes of its analytic shapes
+  std::vector<int> shape_rows;        ///< their rows in shape.def
 };
 
 /// A rigid motion body -> part: x_part = rotation·x + translation.
@@ -37,14 +37,14 @@ struct Geometry {
   std::vector<ClrayPrimitive> primitives;
   std::vector<double> shapes;
   std::vector<ClrayNode> nodes;
-  std::vector<Part> parts;           ///< static part first, if there is one
-  std::vector<int> shape_rows;       ///< rows of shape.def in use, ascending
-  int mesh_row = 0;                  ///< of triangles
+  std::vector<Part> parts;      ///< static part first, if there is one
+  std::vector<int> shape_rows;  ///< rows of shape.def in use, ascending
+  int mesh_row = 0;             ///< of triangles
   std::vector<std::uint32_t> part_of_component;
-  std::uint32_t stack_needed = 1;    ///< of the deepest tree
-  bool convex = false;               ///< nothing outside can be hidden by the body itself
+  std::uint32_t stack_needed = 1;  ///< of the deepest tree
+  bool convex = false;             ///< nothing outside can be hidden by the body itself
   MeshReport report;
-  Point centre{{0, 0, 0}};           ///< of the bounding sphere over all hinge angles
+  Point centre{{0, 0, 0}};  ///< of the bounding sphere over all hinge angles
   double radius = 0.0;
 };
 
@@ -55,7 +55,7 @@ Geometry build_geometry(const Scene& scene);
 RigidMotion part_motion(const Scene& scene, const Part& part, const Vec3& source, const Vec3& observer);
 
 /// Least and greatest x·direction over the body with its parts in place (exact up to rounding).
-void body_extent(const Geometry& geometry, const std::vector<RigidMotion>& motions, const Point& direction,
-                 double* low, double* high);
+void body_extent(const Geometry& geometry, const std::vector<RigidMotion>& motions, const Point& direction, double* low,
+                 double* high);
 
 }  // namespace clray

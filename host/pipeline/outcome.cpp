@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "pipeline/estimate.hpp"
+#include "pipeline/sum_reader.hpp"
 #include "scene/spectrum.hpp"
 #include "shared/elementary.h"
 
@@ -16,71 +17,8 @@ namespace {
 constexpr double kLightSpeed = 299792458.0;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-/// Reads the sums of a pass in the units of its results.
-class Reader {
- public:
-  Reader(const PassPlan& plan, const Sums& sums)
-      : plan_(plan), sums_(sums), weight_(1.0 / plan.constants.weight_scale), unit_(1.0 / plan.constants.unit_scale) {}
-
-  std::uint64_t slot(std::size_t view, std::size_t lane, std::size_t c) const {
-    return (view * plan_.lanes.size() + lane) * plan_.connections + c;
-  }
-  std::uint64_t row(std::uint64_t slot, std::uint32_t r) const { return slot * plan_.replicates + r; }
-
-  /// m² of beam that one point of one replicate stands for.
-  double share(std::size_t view) const { return plan_.area_m2[view] / static_cast<double>(sums_.points); }
-
-  /// Moment k of replicate r (w, w·tau, w·tau²), in m²/sr.
-  double total(std::size_t view, std::size_t lane, std::size_t c, std::uint32_t r, int moment) const {
-    return at(3 * row(slot(view, lane, c), r) + moment) * weight_ * share(view);
-  }
-  /// Bin of a delay detector, 0 below, bins+1 above; m²/sr.
-  double bin(const DelayPlan& d, std::size_t view, std::uint64_t slot, std::uint32_t r, std::uint32_t b) const {
-    return at(d.sums + row(slot, r) * (d.bins + 2ull) + b) * weight_ * share(view);
-  }
-  std::uint64_t hits(const DelayPlan& d, std::uint64_t slot, std::uint32_t r, std::uint32_t b) const {
-    return sums_.hits[d.hits + row(slot, r) * (d.bins + 3ull) + 1 + b];
-  }
-  double largest_weight(const DelayPlan& d, std::uint64_t slot, std::uint32_t r) const {
-    const auto bits = static_cast<std::uint32_t>(sums_.hits[d.hits + row(slot, r) * (d.bins + 3ull)]);
-    float value;
-    std::memcpy(&value, &bits, sizeof value);
-    return value;
-  }
-  /// Momentum (0-2) or torque (3-5) of a component, m² or m³.
-  double push(std::size_t view, std::size_t lane, std::size_t component, std::uint32_t r, int k) const {
-    const std::uint64_t view_row = (view * plan_.lanes.size() + lane) * plan_.replicates + r;
-    const double value = at(plan_.constants.pressure + (view_row * plan_.components + component) * 6 + k);
-    return value * unit_ * share(view) * (k >= 3 ? plan_.lever_m : 1.0);
-  }
-  double book(std::size_t view, std::size_t lane, std::uint32_t r, int book) const {
-    const std::uint64_t view_row = (view * plan_.lanes.size() + lane) * plan_.replicates + r;
-    return at(plan_.constants.books + view_row * CLRAY_BOOKS + book) * unit_ * share(view);
-  }
-  /// Radiance over irradiance of a pixel in half r, 1/sr.
-  double pixel(std::size_t view, std::size_t lane, std::uint32_t r, std::uint64_t pixel) const {
-    const std::uint64_t pixels = static_cast<std::uint64_t>(plan_.width) * plan_.height;
-    const std::uint64_t view_row = (view * plan_.lanes.size() + lane) * plan_.replicates + r;
-    return at(plan_.constants.pixels + view_row * pixels + pixel) * weight_ / static_cast<double>(sums_.points);
-  }
-
- private:
-  double at(std::uint64_t index) const { return static_cast<double>(sums_.values[index]); }
-
-  const PassPlan& plan_;
-  const Sums& sums_;
-  double weight_, unit_;
-};
-
-template <class Function>
-std::vector<double> per_replicate(const PassPlan& plan, Function&& function) {
-  std::vector<double> values(plan.replicates);
-  for (std::uint32_t r = 0; r < plan.replicates; ++r) values[r] = function(r);
-  return values;
-}
-
 /// Mean and width of delay: ratios of pooled sums, errors by jackknife.
-void delay_moments(const PassPlan& plan, const Reader& read, std::size_t v, std::size_t l, std::size_t c,
+void delay_moments(const PassPlan& plan, const SumReader& read, std::size_t v, std::size_t l, std::size_t c,
                    DelayResult* out) {
   double pooled[3] = {};
   for (int k = 0; k < 3; ++k) {
@@ -104,7 +42,7 @@ void delay_moments(const PassPlan& plan, const Reader& read, std::size_t v, std:
   out->rms_width_s = estimate_jackknife(width_of(pooled), widths);
 }
 
-void delay_bins(const PassPlan& plan, const Reader& read, const DelayPlan& delay, std::size_t v, std::uint64_t slot,
+void delay_bins(const PassPlan& plan, const SumReader& read, const DelayPlan& delay, std::size_t v, std::uint64_t slot,
                 double points, DelayResult* out) {
   const double count = plan.replicates;
   double largest = 0.0;
@@ -138,11 +76,25 @@ void delay_bins(const PassPlan& plan, const Reader& read, const DelayPlan& delay
   }
 }
 
-/// Apparent AB magnitude of an irradiance within a top hat: against 3631 Jy over the same frequencies.
+/// Apparent AB magnitude of an irradiance that passed a band: against 3631 Jy through the same band.
 double magnitude_of(double W_m2, const Band& band) {
-  if (!(band.high_nm > band.low_nm) || !(W_m2 > 0.0)) return kNan;
-  const double hertz = kLightSpeed * 1e9 * (1.0 / band.low_nm - 1.0 / band.high_nm);
-  return -2.5 * el_log(W_m2 / (3631e-26 * hertz)) / el_log(10.0);
+  const double zero = ab_zero_W_m2(band);
+  return zero > 0.0 && W_m2 > 0.0 ? -2.5 * el_log(W_m2 / zero) / el_log(10.0) : kNan;
+}
+
+/// Distance of an observer: its own, else the station's at that time; 0 where unknown (a prediction is left to the
+/// laser-ranging session).
+double range_m(const Scene& scene, std::size_t observer, double time_s) {
+  if (scene.observers[observer].range_m > 0.0) return scene.observers[observer].range_m;
+  if (!scene.station || !scene.station->cpf_file.empty()) return 0.0;
+  const auto& table = scene.station->ranges;
+  if (table.empty()) return scene.station->range_m;
+  if (time_s < table.front().first || time_s > table.back().first) return 0.0;
+  if (time_s == table.front().first) return table.front().second;
+  std::size_t i = 1;
+  while (table[i].first < time_s) ++i;
+  const double share = (time_s - table[i - 1].first) / (table[i].first - table[i - 1].first);
+  return (1.0 - share) * table[i - 1].second + share * table[i].second;
 }
 
 class Writer {
@@ -174,8 +126,8 @@ class Writer {
  private:
   ResultKey key(int detector, std::size_t v, std::size_t l, std::size_t c) const {
     ResultKey k;
-    k.detector = scene_.detectors[detector].name.empty() ? scene_.detectors[detector].kind
-                                                         : scene_.detectors[detector].name;
+    k.detector =
+        scene_.detectors[detector].name.empty() ? scene_.detectors[detector].kind : scene_.detectors[detector].name;
     if (scene_.observers.size() > 1 && !plan_.grid) k.observer = scene_.observers[c].name;
     k.variant = plan_.lanes[l].variant;
     k.band = plan_.lanes[l].band_name;
@@ -219,15 +171,13 @@ class Writer {
       s.intensity_m2_per_sr = intensity(v, l, c);
       s.source_W_m2 = source_band_W_m2(scene_.source, s.band);
       s.magnitude_AB = s.magnitude_standard_error = kNan;
-      if (scene_.station) {
-        const double range = scene_.station->range_m;
+      if (const double range = range_m(scene_, c, plan_.orientations[v].time_s); range > 0.0) {
         const double factor = s.source_W_m2 / (range * range);
         s.received_W_m2 = factor * s.intensity_m2_per_sr.value;
         s.received_W_m2_standard_error = factor * s.intensity_m2_per_sr.standard_error;
         s.magnitude_AB = magnitude_of(s.received_W_m2, s.band);
-        s.magnitude_standard_error = s.received_W_m2 > 0.0 ? 2.5 / el_log(10.0) * s.received_W_m2_standard_error /
-                                                                 s.received_W_m2
-                                                           : kNan;
+        s.magnitude_standard_error =
+            s.received_W_m2 > 0.0 ? 2.5 / el_log(10.0) * s.received_W_m2_standard_error / s.received_W_m2 : kNan;
       }
       const Orientation& o = plan_.orientations[v];
       const vec3 a = v3(o.source.x, o.source.y, o.source.z);
@@ -262,16 +212,16 @@ class Writer {
       p.component_m2.push_back(vector_of(v, l, k, k + 1, 0));
       p.component_m3.push_back(vector_of(v, l, k, k + 1, 3));
     }
-    p.absorbed_m2 = estimate_mean(
-        per_replicate(plan_, [&](std::uint32_t r) { return read_.book(v, l, r, CLRAY_BOOK_ABSORBED); }));
+    p.absorbed_m2 =
+        estimate_mean(per_replicate(plan_, [&](std::uint32_t r) { return read_.book(v, l, r, CLRAY_BOOK_ABSORBED); }));
     out_.pressure.push_back(std::move(p));
   }
 
   // Books of lane 0, averaged over the views.
   void energy() {
-    Estimate* entries[CLRAY_BOOKS] = {&out_.energy.incident_m2,  &out_.energy.reflected_m2, &out_.energy.absorbed_m2,
-                                      &out_.energy.roulette_m2, &out_.energy.truncated_m2,
-                                      &out_.energy.unconnected_specular_m2};
+    Estimate* entries[CLRAY_BOOKS] = {&out_.energy.incident_m2,  &out_.energy.reflected_m2,
+                                      &out_.energy.absorbed_m2,  &out_.energy.roulette_m2,
+                                      &out_.energy.truncated_m2, &out_.energy.unconnected_specular_m2};
     for (int book = 0; book < CLRAY_BOOKS; ++book) {
       *entries[book] = estimate_mean(per_replicate(plan_, [&](std::uint32_t r) {
         double sum = 0.0;
@@ -336,84 +286,16 @@ class Writer {
   const Geometry& geometry_;
   const PassPlan& plan_;
   const PassOutcome& outcome_;
-  Reader read_;
+  SumReader read_;
   Result& out_;
   std::size_t first_orientation_ = 0;
 };
 
 }  // namespace
 
-std::vector<Target> targets_of(const PassPlan& plan, const Geometry& geometry, const Sums& sums) {
-  const Reader read(plan, sums);
-  std::vector<Target> targets;
-  if (plan.pixels) return targets;
-  for (std::size_t v = 0; v < plan.views.size(); ++v) {
-    for (std::size_t l = 0; l < plan.lanes.size(); ++l) {
-      for (std::size_t c = 0; c < plan.connections && plan.connect; ++c) {
-        Target t;
-        t.components.push_back(per_replicate(plan, [&](std::uint32_t r) { return read.total(v, l, c, r, 0); }));
-        targets.push_back(std::move(t));
-      }
-      if (!plan.pressure) continue;
-      Target force, torque;
-      for (int k = 0; k < 6; ++k) {
-        (k < 3 ? force : torque).components.push_back(per_replicate(plan, [&](std::uint32_t r) {
-          double sum = 0.0;
-          for (std::size_t part = 0; part < plan.components; ++part) sum += read.push(v, l, part, r, k);
-          return sum;
-        }));
-      }
-      double square = 0.0;
-      for (const auto& axis : force.components) {
-        const double mean = estimate_mean(axis).value;
-        square += mean * mean;
-      }
-      torque.scale = std::sqrt(square) * geometry.radius;
-      targets.push_back(std::move(force));
-      targets.push_back(std::move(torque));
-    }
-  }
-  return targets;
-}
-
-void largest_error(const std::vector<Target>& targets, double* relative_error, double* first_total) {
-  *relative_error = *first_total = kNan;
-  for (std::size_t t = 0; t < targets.size(); ++t) {
-    double value = 0.0, error = 0.0;
-    for (const auto& axis : targets[t].components) {
-      const Estimate e = estimate_mean(axis);
-      value += e.value * e.value;
-      error += e.standard_error * e.standard_error;
-    }
-    value = std::sqrt(value);
-    if (t == 0) *first_total = value;
-    const double scale = targets[t].scale > 0.0 ? targets[t].scale : value;
-    if (!(scale > 0.0)) continue;
-    const double relative = std::sqrt(error) / scale;
-    if (!(*relative_error >= relative)) *relative_error = relative;
-  }
-}
-
 void add_results(const Scene& scene, const Geometry& geometry, const PassPlan& plan, const PassOutcome& outcome,
                  Result* result) {
   Writer(scene, geometry, plan, outcome, result).write();
-}
-
-std::uint64_t digest_of(std::uint64_t state, const PassPlan& plan, const Sums& sums) {
-  const std::uint64_t head[3] = {static_cast<std::uint64_t>(plan.scale_bits), plan.replicates, sums.points};
-  state = fnv1a(state, head, sizeof head);
-  const auto add = [&](std::uint64_t first, std::uint64_t count) {
-    if (count != 0) state = fnv1a(state, sums.values.data() + first, count * sizeof(Sum));
-  };
-  // Only what the scene asked for: the generic program keeps more.
-  add(plan.constants.totals, plan.totals_size);
-  if (plan.pressure) add(plan.constants.pressure, plan.pressure_size);
-  if (plan.scatter) add(plan.constants.books, plan.books_size);
-  add(plan.constants.pixels, plan.pixels_size);
-  const std::uint64_t delays = plan.delays.empty() ? plan.sums_size : plan.delays.front().sums;
-  add(delays, plan.sums_size - delays);
-  if (!sums.hits.empty()) state = fnv1a(state, sums.hits.data(), sums.hits.size() * sizeof(std::uint64_t));
-  return state;
 }
 
 }  // namespace clray

@@ -12,7 +12,7 @@ struct PassOutcome {
   Sums sums;
   bool partial = false;
   bool target_asked = false, target_reached = false;
-  std::uint64_t rays_total = 0;          ///< per view, all phases
+  std::uint64_t rays_total = 0;  ///< per view, all phases
   std::vector<ErrorPoint> errors;
 };
 

@@ -19,9 +19,9 @@
 namespace clray {
 namespace {
 
-constexpr double kSliceSeconds = 0.15;           // of a launch; DESIGN asks for at most 0.3
+constexpr double kSliceSeconds = 0.15;                  // of a launch; DESIGN asks for at most 0.3
 constexpr std::uint64_t kMostContributions = 1u << 24;  // per accumulator between drains (scales())
-constexpr std::uint32_t kChunk = 16;             // points of a work-item
+constexpr std::uint32_t kChunk = 16;                    // points of a work-item
 
 double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -39,7 +39,8 @@ struct PassRunner::OnDevice {
   std::uint64_t slice_items = 4096;  // of the next launch
   bool has_wide = false;
 
-  OnDevice(OpenedDevice& device, const PassPlan& plan, const Geometry& geometry) : opened(device), constants(plan.constants) {
+  OnDevice(OpenedDevice& device, const PassPlan& plan, const Geometry& geometry)
+      : opened(device), constants(plan.constants) {
     const cl::Program program = build_program(opened, "trace.cl", plan.options);
     kernel = make_kernel(opened, program, "clray_trace");
     check_size(plan);
@@ -80,15 +81,15 @@ struct PassRunner::OnDevice {
   void check_size(const PassPlan& plan) const {
     const double bytes = 8.0 * static_cast<double>(plan.sums_size), limit = most_bytes();
     if (bytes > limit)
-      throw Error(ErrorCode::input,
-                  fmt::format("the detectors need {:.3g} GiB in one buffer, {} gives at most {:.3g}: fewer bins, pixels, "
-                              "orientations or wavelengths are needed", bytes / 1073741824.0, opened.info.name,
-                              limit / 1073741824.0));
+      throw Error(
+          ErrorCode::input,
+          fmt::format("the detectors need {:.3g} GiB in one buffer, {} gives at most {:.3g}: fewer bins, pixels, "
+                      "orientations or wavelengths are needed",
+                      bytes / 1073741824.0, opened.info.name, limit / 1073741824.0));
   }
   double most_bytes() const {
-    return with_cl_errors(opened.info.name, [&] {
-      return static_cast<double>(opened.device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>());
-    });
+    return with_cl_errors(opened.info.name,
+                          [&] { return static_cast<double>(opened.device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>()); });
   }
 
   void set_epoch(std::uint32_t epoch) {
@@ -152,8 +153,8 @@ bool PassRunner::run_block(std::uint32_t first_point, std::uint32_t points,
                            const std::function<bool(double)>& keep_going) {
   const std::uint32_t chunk = std::min(kChunk, points);
   const std::uint64_t pixels = plan_.pixels ? static_cast<std::uint64_t>(plan_.width) * plan_.height : 1;
-  const std::uint64_t items = (static_cast<std::uint64_t>(points) + chunk - 1) / chunk * plan_.replicates * pixels *
-                              plan_.views.size();
+  const std::uint64_t items =
+      (static_cast<std::uint64_t>(points) + chunk - 1) / chunk * plan_.replicates * pixels * plan_.views.size();
   std::atomic<std::uint64_t> next{0};
   std::atomic<bool> go{true};
   std::mutex mutex;

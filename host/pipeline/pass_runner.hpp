@@ -18,10 +18,10 @@ using Sum = __int128;
 
 /// Integer sums of a pass so far; two runs of the same points have equal sums.
 struct Sums {
-  std::vector<Sum> values;                 ///< at scale 2^S, layout of the plan
+  std::vector<Sum> values;  ///< at scale 2^S, layout of the plan
   std::vector<std::uint64_t> hits;
   std::array<std::uint64_t, CLRAY_COUNTERS> counters{};
-  std::uint64_t points = 0;                ///< per replicate and view (and pixel)
+  std::uint64_t points = 0;  ///< per replicate and view (and pixel)
 };
 
 /// One program and its buffers on every opened device.
@@ -30,8 +30,8 @@ class PassRunner {
   PassRunner(Device& device, const PassPlan& plan, const Geometry& geometry, const TraceOptions& options);
   ~PassRunner();
 
-  /// Adds points [sums->points, points) of epoch `epoch` to *sums. `keep_going` is asked between launches with the share
-  /// done; when it says no, returns false, and *sums is to be thrown away.
+  /// Adds points [sums->points, points) of epoch `epoch` to *sums. `keep_going` is asked between launches with the
+  /// share done; when it says no, returns false, and *sums is to be thrown away.
   bool run(Sums* sums, std::uint64_t points, std::uint32_t epoch, const std::function<bool(double)>& keep_going);
 
   /// Seconds spent building programs.

@@ -17,7 +17,9 @@ namespace {
 
 constexpr double kNsToMetres = 0.299792458;
 
-const DetectorSpec& spec_of(const Scene& scene, int index) { return scene.detectors[index]; }
+const DetectorSpec& spec_of(const Scene& scene, int index) {
+  return scene.detectors[index];
+}
 
 double value_of(const DetectorSpec& spec, const std::string& key) {
   const TableRow& row = table("detector")[table_index("detector", spec.kind)];
@@ -79,13 +81,15 @@ class Planner {
         if (!(last > first))
           throw Error(ErrorCode::input,
                       fmt::format("the delay window is empty: it starts at {} ns and stops at {} ns",
-                                  first / kNsToMetres, last / kNsToMetres), "detector " + spec.name);
+                                  first / kNsToMetres, last / kNsToMetres),
+                      "detector " + spec.name);
         double bin = (last - first) / delay.bins;
         if (!std::isnan(bin_ps)) {
           bin = bin_ps * 1e-3 * kNsToMetres;
           const double bins = std::ceil((last - first) / bin);
           if (!(bins <= 1e7))
-            throw Error(ErrorCode::input, fmt::format("bin_ps = {} makes {:.3g} bins, at most 1e7 expected", bin_ps, bins),
+            throw Error(ErrorCode::input,
+                        fmt::format("bin_ps = {} makes {:.3g} bins, at most 1e7 expected", bin_ps, bins),
                         "detector " + spec.name);
           delay.bins = std::max(c == 0 ? 1u : delay.bins, static_cast<std::uint32_t>(bins));
         }
@@ -231,13 +235,15 @@ void Planner::specialise() {
                                         [](const Part& part) { return part.hinged_component >= 0; });
   const bool only_lambert = p_.surfaces.models.size() == 1 && p_.surfaces.models[0] == table_index("brdf", "lambert");
   const bool connects_again = p_.connect && p_.max_bounces > 1;
-  std::string why_no_shadow = !p_.connect ? "nothing is connected to an observer"
+  std::string why_no_shadow = !p_.connect        ? "nothing is connected to an observer"
                               : geometry_.convex ? "the body is convex: what faces the observer is seen"
                                                  : "the observer is at the source: what is lit is seen";
   decide("CLRAY_SHADOW", p_.connect && !geometry_.convex && (bistatic || connects_again), "shadow rays",
          bistatic ? "an observer is not at the source" : "later bounces are connected", why_no_shadow);
   decide("CLRAY_SCATTER", p_.scatter, "scattered directions",
-         p_.max_bounces > 1 ? "several bounces" : p_.pressure ? "radiation pressure" : "mirrors",
+         p_.max_bounces > 1 ? "several bounces"
+         : p_.pressure      ? "radiation pressure"
+                            : "mirrors",
          "one bounce, connected directly");
   p_.options.defines["CLRAY_ENERGY"] = p_.options.defines["CLRAY_SCATTER"];
   decide("CLRAY_DELTA", p_.surfaces.delta, "ideal reflections", "a mirror is in the scene", "no mirror in the scene");
@@ -282,8 +288,16 @@ PassPlan beam_plan(const Scene& scene, const std::vector<Lane>& lanes) {
   return plan;
 }
 
-/// Directions of the Sun on a grid: azimuth from +x toward +y, elevation from the xy plane, degrees' midpoints excluded:
-/// elevations run from -90 to 90 inclusive, azimuths from 0 to 360 exclusive.
+/// Wavelengths of a picture traced at once: what a hit costs is paid once for all of them. Their sums stay within a
+/// quarter of a GiB, whatever the device, so that the digest is the same on all; the rest goes in further chunks.
+std::size_t lanes_together(const DetectorSpec& spec, std::size_t views) {
+  const double pixels = value_of(spec, "width") * value_of(spec, "height") * static_cast<double>(views);
+  const double lanes = 0x1p28 / (pixels * 2.0 * sizeof(std::int64_t));
+  return static_cast<std::size_t>(std::min(64.0, std::max(1.0, lanes)));
+}
+
+/// Directions of the Sun on a grid: azimuth from +x toward +y, elevation from the xy plane, degrees' midpoints
+/// excluded: elevations run from -90 to 90 inclusive, azimuths from 0 to 360 exclusive.
 std::vector<Orientation> sun_grid(const Scene& scene, int azimuths, int elevations);
 
 }  // namespace
@@ -333,10 +347,10 @@ std::vector<PassPlan> plan_passes(const Scene& scene, const Geometry& geometry) 
     const DetectorSpec& spec = scene.detectors[d];
     if (table("detector")[table_index("detector", spec.kind)].side != "pixel") continue;
     for (std::size_t o = 0; o < scene.observers.size(); ++o) {
-      // Wavelengths go in chunks, so that a cube of many bands fits the device.
-      const std::size_t chunk = 16;
+      const std::size_t chunk = lanes_together(spec, orientations(scene).size());
       for (std::size_t first = 0; first < lanes.size(); first += chunk) {
-        PassPlan plan = beam_plan(scene, {lanes.begin() + first, lanes.begin() + std::min(lanes.size(), first + chunk)});
+        PassPlan plan =
+            beam_plan(scene, {lanes.begin() + first, lanes.begin() + std::min(lanes.size(), first + chunk)});
         plan.phase = "pictures";
         plan.pixels = plan.connect = true;
         plan.pixel_detector = static_cast<int>(d);

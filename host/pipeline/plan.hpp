@@ -17,9 +17,9 @@ namespace clray {
 
 /// Where a delay detector's histograms lie and what window they cover (per connection).
 struct DelayPlan {
-  int detector = 0;                       ///< index into Scene::detectors
+  int detector = 0;  ///< index into Scene::detectors
   std::uint32_t bins = 0;
-  std::vector<double> first_m, bin_m;     ///< path length, relative to the reference point
+  std::vector<double> first_m, bin_m;  ///< path length, relative to the reference point
   std::uint64_t sums = 0, hits = 0;
 };
 
@@ -30,30 +30,30 @@ struct PassPlan {
   std::vector<Orientation> orientations;  ///< one per view; of a grid of Sun directions its own
   std::vector<Lane> lanes;
   Surfaces surfaces;
-  std::uint32_t connections = 1;          ///< observers of a beam; 1 (the source) for pixels
+  std::uint32_t connections = 1;  ///< observers of a beam; 1 (the source) for pixels
   std::uint32_t replicates = 16;
   std::uint32_t components = 1;
   int max_bounces = 1;
   bool connect = false, scatter = false, pressure = false, thermal = false;
   int pressure_detector = -1, pixel_detector = -1;
   int pixel_observer = 0;
-  bool grid = false;                      ///< of Sun directions, for pressure
+  bool grid = false;  ///< of Sun directions, for pressure
   std::uint32_t width = 0, height = 0;
-  std::uint32_t picture_samples = 0;      ///< per pixel; 0: from the error target
+  std::uint32_t picture_samples = 0;  ///< per pixel; 0: from the error target
   double pixel_m = 0.0;
-  std::vector<Vec3> right, up;            ///< of pictures, per view
+  std::vector<Vec3> right, up;  ///< of pictures, per view
   std::vector<DelayPlan> delays;
-  int scale_bits = 0;                     ///< S of weights
+  int scale_bits = 0;  ///< S of weights
   double path_low_m = 0.0, path_high_m = 0.0;
-  double lever_m = 1.0;                   ///< power of two that levers are divided by
-  std::vector<double> area_m2;            ///< that a view's rays cover: of its beam's cells, or of a pixel
-  std::vector<std::uint32_t> cells;       ///< of all views, see silhouette.hpp
+  double lever_m = 1.0;              ///< power of two that levers are divided by
+  std::vector<double> area_m2;       ///< that a view's rays cover: of its beam's cells, or of a pixel
+  std::vector<std::uint32_t> cells;  ///< of all views, see silhouette.hpp
 
   ClrayPass constants{};
   std::vector<ClrayView> views;
   std::vector<ClrayConnection> connection_rows;
   std::vector<ClrayInstance> instances;
-  std::vector<ClrayNode> nodes;           ///< the geometry's, then the top levels
+  std::vector<ClrayNode> nodes;  ///< the geometry's, then the top levels
   std::vector<ClrayDelay> delay_rows;
   std::uint64_t sums_size = 0, hits_size = 0;
   std::uint64_t totals_size = 0, pressure_size = 0, books_size = 0, pixels_size = 0;

@@ -7,12 +7,14 @@
 namespace clray {
 namespace portable {
 
+// clang-format off: models before what calls them
 #include "brdf/brdf.h"
 #include "generated/brdf_all.inc"
 #include "brdf/dispatch.cl"
 #include "shape/shape.h"
 #include "generated/shape_all.inc"
 #include "shape/dispatch.cl"
+// clang-format on
 
 }  // namespace portable
 
@@ -37,6 +39,8 @@ double shape_area_of(int shape, const double* keys) {
   return portable::shape_area(static_cast<u32>(shape), keys);
 }
 
-int shape_traits_of(int shape, const double* keys) { return portable::shape_traits(static_cast<u32>(shape), keys); }
+int shape_traits_of(int shape, const double* keys) {
+  return portable::shape_traits(static_cast<u32>(shape), keys);
+}
 
 }  // namespace clray

@@ -32,8 +32,7 @@ class Rasteriser {
     cell_u_ = grid.size_u / n_;
     cell_v_ = grid.size_v / n_;
     // More than all rounding between here and the device's ray.
-    margin_ = 1e-9 * (grid.size_u + grid.size_v) +
-              1e-14 * (std::fabs(grid.u0) + std::fabs(grid.v0) + geometry.radius);
+    margin_ = 1e-9 * (grid.size_u + grid.size_v) + 1e-14 * (std::fabs(grid.u0) + std::fabs(grid.v0) + geometry.radius);
   }
 
   std::vector<std::uint32_t> cells() {
@@ -120,7 +119,8 @@ class Rasteriser {
         const double y = (b.u - a.u) * (v - a.v) - (b.v - a.v) * (u - a.u);
         const double s = x / area, t = y / area;
         if (area != 0.0 && s >= 0.0 && t >= 0.0 && s + t <= 1.0) {
-          mark(cell, true, a.w + s * (b.w - a.w) + t * (c.w - a.w), a.path + s * (b.path - a.path) + t * (c.path - a.path));
+          mark(cell, true, a.w + s * (b.w - a.w) + t * (c.w - a.w),
+               a.path + s * (b.path - a.path) + t * (c.path - a.path));
         } else {
           mark(cell, false, depth, path);
         }
@@ -128,7 +128,8 @@ class Rasteriser {
     }
   }
 
-  // A shape's silhouette lies in the half-planes that its support function gives; its depth comes from its own ray test.
+  // A shape's silhouette lies in the half-planes that its support function gives; its depth comes from its own ray
+  // test.
   void shape(const ClrayPrimitive& primitive, const RigidMotion& motion, const double* data) {
     const std::array<double, 9>& m = motion.rotation;
     const auto to_local = [&](const vec3& d) {  // direction: beam/body -> part -> shape
@@ -206,9 +207,8 @@ class Rasteriser {
       keys.push_back({static_cast<std::int64_t>(std::floor(path_[cell] / step)),
                       interleave(cell % n_) | interleave(cell / n_) << 1, cell});
     }
-    std::sort(keys.begin(), keys.end(), [](const Key& a, const Key& b) {
-      return a.step != b.step ? a.step < b.step : a.morton < b.morton;
-    });
+    std::sort(keys.begin(), keys.end(),
+              [](const Key& a, const Key& b) { return a.step != b.step ? a.step < b.step : a.morton < b.morton; });
     // Half of the slots go to all cells alike, half to all steps of path alike: rare delays get their share of rays.
     std::vector<std::uint32_t> slots;
     std::size_t steps = 0;
@@ -216,7 +216,8 @@ class Rasteriser {
     for (std::size_t first = 0; first < keys.size();) {
       std::size_t last = first;
       while (last < keys.size() && keys[last].step == keys[first].step) ++last;
-      const double share = static_cast<double>(keys.size()) / (static_cast<double>(steps) * static_cast<double>(last - first));
+      const double share =
+          static_cast<double>(keys.size()) / (static_cast<double>(steps) * static_cast<double>(last - first));
       const auto count = static_cast<std::uint32_t>(std::min(1.0 + std::floor(share), kMostSlots));
       for (; first < last; ++first) {
         for (std::uint32_t k = 0; k < count; ++k) {

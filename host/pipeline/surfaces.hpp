@@ -23,9 +23,9 @@ struct Surfaces {
   std::vector<ClrayMaterial> materials;  ///< [lane][material]
   std::vector<double> tables;
   std::uint32_t columns = 0;
-  std::vector<int> models;               ///< rows of brdf.def in use, ascending
-  bool one_sided = false;                ///< some material has a black back
-  bool delta = false;                    ///< some material is a mirror
+  std::vector<int> models;  ///< rows of brdf.def in use, ascending
+  bool one_sided = false;   ///< some material has a black back
+  bool delta = false;       ///< some material is a mirror
 };
 
 /// Every (variant, band) of the scene, variants outermost.

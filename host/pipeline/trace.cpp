@@ -19,10 +19,10 @@
 namespace clray {
 namespace {
 
-constexpr std::uint64_t kFirstPoints = 1u << 10;      // of a search, per replicate
-constexpr std::uint64_t kLeastRays = 1u << 22;        // with no stopping option
-constexpr std::uint64_t kZeroRays = 1u << 20;         // after which a zero total counts as zero
-constexpr std::uint64_t kMostPoints = 1ull << 32;     // of a 32-bit Sobol sequence
+constexpr std::uint64_t kFirstPoints = 1u << 10;   // of a search, per replicate
+constexpr std::uint64_t kLeastRays = 1u << 22;     // with no stopping option
+constexpr std::uint64_t kZeroRays = 1u << 20;      // after which a zero total counts as zero
+constexpr std::uint64_t kMostPoints = 1ull << 32;  // of a 32-bit Sobol sequence
 constexpr double kDefaultTarget = 0.01;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
@@ -41,8 +41,15 @@ class PassDriver {
  public:
   PassDriver(const Scene& scene, const Geometry& geometry, const PassPlan& plan, PassRunner& runner,
              const TraceHooks& hooks, double time_left_s)
-      : options_(scene.trace), geometry_(geometry), plan_(plan), runner_(runner), hooks_(hooks), start_(now()),
-        time_left_s_(time_left_s), t95_(student_t95(static_cast<int>(plan.replicates) - 1)) {}
+      : options_(scene.trace),
+        geometry_(geometry),
+        plan_(plan),
+        runner_(runner),
+        hooks_(hooks),
+        start_(now()),
+        time_left_s_(time_left_s),
+        // A picture's error is a mean over its pixels: each half-difference has one degree of freedom, all have many.
+        t95_(plan.pixels ? 1.96 : student_t95(static_cast<int>(plan.replicates) - 1)) {}
 
   PassOutcome run() {
     if (plan_.pixels) {
@@ -170,9 +177,7 @@ class PassDriver {
   }
 
   bool passes() const { return std::isnan(last_error_) ? zero_enough() : t95_ * last_error_ <= target_; }
-  bool zero_enough() const {
-    return out_.errors.back().rays >= kZeroRays || plan_.pixels;
-  }
+  bool zero_enough() const { return out_.errors.back().rays >= kZeroRays || plan_.pixels; }
 
   void finish_target(bool asked) {
     out_.target_asked = asked;
@@ -256,9 +261,10 @@ void check_options(const TraceOptions& o) {
 void check_diagnostics(const Result& result, bool allowed) {
   const Diagnostics& d = result.diagnostics;
   if (d.non_finite + d.stack_overflow + d.accumulator_overflow == 0 || allowed) return;
-  throw Error(ErrorCode::bug,
-              fmt::format("the result is not sound: {} weights not finite, {} stack overflows, {} accumulator overflows",
-                          d.non_finite, d.stack_overflow, d.accumulator_overflow));
+  throw Error(
+      ErrorCode::bug,
+      fmt::format("the result is not sound: {} weights not finite, {} stack overflows, {} accumulator overflows",
+                  d.non_finite, d.stack_overflow, d.accumulator_overflow));
 }
 
 void add_unique(const std::vector<std::string>& from, std::vector<std::string>* to) {

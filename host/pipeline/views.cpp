@@ -14,9 +14,15 @@ namespace {
 
 constexpr double kPictureMargin = 1.06;
 
-Point point_of(const Vec3& v) { return {{v.x, v.y, v.z}}; }
-Vec3 vec_of(const vec3& v) { return {v.x, v.y, v.z}; }
-vec3 v3_of(const Vec3& v) { return v3(v.x, v.y, v.z); }
+Point point_of(const Vec3& v) {
+  return {{v.x, v.y, v.z}};
+}
+Vec3 vec_of(const vec3& v) {
+  return {v.x, v.y, v.z};
+}
+vec3 v3_of(const Vec3& v) {
+  return v3(v.x, v.y, v.z);
+}
 void store(double* out, const vec3& v) {
   out[0] = v.x;
   out[1] = v.y;
@@ -123,8 +129,8 @@ void beam_rectangle(const Scene& scene, const Geometry& geometry, const std::vec
   double area = (u1 - u0) * (v1 - v0);
   if (scene.trace.sobol && scene.trace.stratify && area > 0.0) {
     const double* o = plan->connection_rows[plan->connection_rows.size() - plan->connections].direction;
-    const BeamGrid grid{t, b, s, v3(s.x + o[0], s.y + o[1], s.z + o[2]), u0, v0, u1 - u0, v1 - v0,
-                        grid_cells(plan->orientations.size())};
+    const BeamGrid grid{t,  b,       s,       v3(s.x + o[0], s.y + o[1], s.z + o[2]), u0,
+                        v0, u1 - u0, v1 - v0, grid_cells(plan->orientations.size())};
     const std::vector<std::uint32_t> cells = silhouette_cells(geometry, motions, grid);
     view->grid = grid.cells;
     view->first_cell = static_cast<std::uint32_t>(plan->cells.size() / 2);
@@ -193,9 +199,9 @@ Vec3 direction_from_degrees(double azimuth_deg, double elevation_deg) {
 
 void build_views(const Scene& scene, const Geometry& geometry, PassPlan* plan) {
   plan->nodes = geometry.nodes;
-  const bool instanced = !scene.trace.specialise ||
-                         std::any_of(geometry.parts.begin(), geometry.parts.end(),
-                                     [](const Part& part) { return part.hinged_component >= 0; });
+  const bool instanced =
+      !scene.trace.specialise || std::any_of(geometry.parts.begin(), geometry.parts.end(),
+                                             [](const Part& part) { return part.hinged_component >= 0; });
   std::vector<std::vector<RigidMotion>> all_motions;
   for (const Orientation& orientation : plan->orientations) {
     const std::vector<RigidMotion> motions = motions_of(scene, geometry, orientation);

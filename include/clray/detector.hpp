@@ -9,8 +9,8 @@ namespace clray {
 
 /// A detector asked for by a scene or by --detector.
 struct DetectorSpec {
-  std::string kind = "delay";                ///< scene-file name of a row of detector.def
-  std::string name;                          ///< key of its results; the kind unless given
+  std::string kind = "delay";  ///< scene-file name of a row of detector.def
+  std::string name;            ///< key of its results; the kind unless given
   /// By the row's keys, in the unit that the key names (start_ns, bin_ps, width, exposure …);
   /// an absent key takes its default.
   std::map<std::string, double> parameters;

@@ -12,7 +12,7 @@ namespace clray {
 struct DeviceInfo {
   int index = 0;
   std::string name, platform, vendor, driver, version;
-  std::string type;              ///< "cpu", "gpu", "accelerator", "cpu+gpu" (a simulator claims both), …
+  std::string type;  ///< "cpu", "gpu", "accelerator", "cpu+gpu" (a simulator claims both), …
   unsigned compute_units = 0;
   double memory_GiB = 0.0;
   bool fp64 = false;

@@ -21,8 +21,8 @@ namespace clray {
 struct Estimate {
   double value = 0.0;
   double standard_error = 0.0;
-  double low = 0.0, high = 0.0;                  ///< 95 % Student-t interval
-  double relative_variance_of_variance = 0.0;    ///< of the squared standard error; NaN where undefined
+  double low = 0.0, high = 0.0;                ///< 95 % Student-t interval
+  double relative_variance_of_variance = 0.0;  ///< of the squared standard error; NaN where undefined
 };
 
 /// A vector with a standard error per component.
@@ -33,34 +33,34 @@ struct VectorEstimate {
 
 /// Which member of a run a record belongs to; empty names where there is only one.
 struct ResultKey {
-  std::string detector;       ///< DetectorSpec::name
+  std::string detector;  ///< DetectorSpec::name
   std::string observer;
   std::string variant;
   std::string band;
-  std::size_t orientation = 0;///< index into Result::orientations
+  std::size_t orientation = 0;  ///< index into Result::orientations
 };
 
 /// One instant of the motion (a single one, the identity, without motion).
 struct Orientation {
   double time_s = 0.0;
   Quaternion body_to_space{1.0, 0.0, 0.0, 0.0};
-  Vec3 source{0.0, 0.0, 1.0};                 ///< toward the source, body frame
-  std::vector<Vec3> observers;                ///< body frame, one per Scene::observers
+  Vec3 source{0.0, 0.0, 1.0};   ///< toward the source, body frame
+  std::vector<Vec3> observers;  ///< body frame, one per Scene::observers
 };
 
 /// The delay camera: A(t), see PHYSICS section 1.
 struct DelayResult {
   ResultKey key;
-  Estimate intensity_m2_per_sr;               ///< A, everything including below and above the window
+  Estimate intensity_m2_per_sr;  ///< A, everything including below and above the window
   Estimate mean_delay_s, rms_width_s;
   double first_bin_start_s = 0.0, bin_width_s = 0.0;
-  std::vector<double> bin_m2_per_sr;          ///< A per bin (not per second)
-  std::vector<double> bin_standard_error;     ///< same unit
-  std::vector<double> bin_upper_bound;        ///< for unresolved bins; same unit
+  std::vector<double> bin_m2_per_sr;       ///< A per bin (not per second)
+  std::vector<double> bin_standard_error;  ///< same unit
+  std::vector<double> bin_upper_bound;     ///< for unresolved bins; same unit
   std::vector<std::uint64_t> hits;
   std::vector<std::uint8_t> resolved;
   double below_m2_per_sr = 0.0, above_m2_per_sr = 0.0;
-  std::vector<double> photons_per_ns;         ///< expected rate per bin at the station; empty without one
+  std::vector<double> photons_per_ns;  ///< expected rate per bin at the station; empty without one
 };
 
 /// The one-pixel spectrometer: A in one band.
@@ -68,7 +68,7 @@ struct SpectrometerResult {
   ResultKey key;
   Band band;
   Estimate intensity_m2_per_sr;
-  double source_W_m2 = 0.0;                   ///< of the source inside the band
+  double source_W_m2 = 0.0;                                        ///< of the source inside the band
   double received_W_m2 = 0.0, received_W_m2_standard_error = 0.0;  ///< at the observer's range; 0 without one
   double magnitude_AB = 0.0, magnitude_standard_error = 0.0;       ///< NaN without a range
   double phase_angle_rad = 0.0;
@@ -77,18 +77,18 @@ struct SpectrometerResult {
 /// Radiation force and torque per unit irradiance, net of all bounces.
 struct PressureResult {
   ResultKey key;
-  Vec3 sun{0.0, 0.0, 1.0};                    ///< toward the source, body frame
-  VectorEstimate coefficient_m2;              ///< C = F c / E
-  VectorEstimate torque_coefficient_m3;       ///< about the reference point
+  Vec3 sun{0.0, 0.0, 1.0};                                 ///< toward the source, body frame
+  VectorEstimate coefficient_m2;                           ///< C = F c / E
+  VectorEstimate torque_coefficient_m3;                    ///< about the reference point
   std::vector<VectorEstimate> component_m2, component_m3;  ///< shares, one per Scene::components
-  Estimate absorbed_m2;                       ///< absorbed power over irradiance
+  Estimate absorbed_m2;                                    ///< absorbed power over irradiance
 };
 
 /// A picture or cube: radiance over irradiance (1/sr) per pixel and band.
 struct ImageResult {
   ResultKey key;
   int width = 0, height = 0;
-  double pixel_m = 0.0;                       ///< edge of a pixel at the body
+  double pixel_m = 0.0;                               ///< edge of a pixel at the body
   Vec3 right{1, 0, 0}, up{0, 1, 0}, toward{0, 0, 1};  ///< image axes in the body frame
   std::vector<Band> bands;
   std::vector<double> band_source_W_m2;
@@ -105,12 +105,13 @@ struct EnergyBooks {
 
 /// One point of error against run time.
 struct ErrorPoint {
-  std::string phase;                          ///< "search", "confirm" or "trace"
-  std::uint64_t rays = 0;                     ///< per orientation
-  double seconds = 0.0;                       ///< of tracing, from the phase's start
-  double relative_standard_error = 0.0;       ///< the largest over all targets; NaN if all totals are zero
-  double first_total = std::numeric_limits<double>::quiet_NaN();  ///< the first total of the result, in its unit:
-                                              ///< of delay, else spectrometer, else |C| of pressure; NaN if not kept
+  std::string phase;                     ///< "search", "confirm" or "trace"
+  std::uint64_t rays = 0;                ///< per orientation
+  double seconds = 0.0;                  ///< of tracing, from the phase's start
+  double relative_standard_error = 0.0;  ///< the largest over all targets; NaN if all totals are zero
+  double first_total =
+      std::numeric_limits<double>::quiet_NaN();  ///< the first total of the result, in its unit:
+                                                 ///< of delay, else spectrometer, else |C| of pressure; NaN if not kept
 };
 
 /// Failures, counted and never hidden; all are zero in a sound run.
@@ -127,38 +128,38 @@ struct Seconds {
 struct Result {
   DeviceInfo device;
   std::uint64_t seed = 0;
-  std::uint64_t rays = 0;                     ///< per orientation, of the result (the confirmation's)
-  std::uint64_t rays_total = 0;               ///< traced in all
+  std::uint64_t rays = 0;        ///< per orientation, of the result (the confirmation's)
+  std::uint64_t rays_total = 0;  ///< traced in all
   int replicates = 0;
-  std::uint64_t digest = 0;                   ///< of all integer sums: equal digests mean equal results
-  bool partial = false;                       ///< ended early by a signal or the time limit
+  std::uint64_t digest = 0;  ///< of all integer sums: equal digests mean equal results
+  bool partial = false;      ///< ended early by a signal or the time limit
   bool target_asked = false, target_reached = false;
-  double extent_m = 0.0;                      ///< diameter of the bounding sphere
-  MeshReport mesh;                            ///< all meshes together
+  double extent_m = 0.0;  ///< diameter of the bounding sphere
+  MeshReport mesh;        ///< all meshes together
   Seconds seconds;
   Diagnostics diagnostics;
   EnergyBooks energy;
-  std::vector<std::string> kept, left_out;    ///< decisions of specialisation, each with its reason
+  std::vector<std::string> kept, left_out;  ///< decisions of specialisation, each with its reason
   std::vector<std::string> warnings;
   std::vector<ErrorPoint> errors;
   std::vector<Orientation> orientations;
   std::vector<DelayResult> delay;
   std::vector<SpectrometerResult> spectrometer;
   std::vector<PressureResult> pressure;
-  std::vector<ImageResult> image;             ///< of rgb and hyperspectral detectors
+  std::vector<ImageResult> image;  ///< of rgb and hyperspectral detectors
 };
 
 /// Files that another part adds to a result, and its entry in the summary.
 struct MoreFiles {
-  std::vector<std::string> names;             ///< written into the folder given
-  std::string summary_key, summary_json;      ///< an entry for summary.json, as JSON text; empty for none
+  std::vector<std::string> names;         ///< written into the folder given
+  std::string summary_key, summary_json;  ///< an entry for summary.json, as JSON text; empty for none
 };
 
 /// How to write results.
 struct WriteOptions {
   bool plots = true;
-  std::string command;                        ///< as typed, for the summary
-  std::string reference_file;                 ///< a summary.json or delay.csv to measure the true error against
+  std::string command;                           ///< as typed, for the summary
+  std::string reference_file;                    ///< a summary.json or delay.csv to measure the true error against
   std::vector<std::string>* warnings = nullptr;  ///< receives what went wrong without harm (no gnuplot, …)
   /// Called with the unfinished folder; what it writes there appears with the rest, or not at all.
   std::vector<std::function<MoreFiles(const std::string& folder)>> more;
@@ -176,7 +177,7 @@ void check_output(const std::string& folder);
 /// Totals to measure the true error against, by "detector/observer/variant/band/orientation".
 struct Reference {
   std::string file;
-  std::map<std::string, double> totals;       ///< m²/sr, or m² for |C| of pressure
+  std::map<std::string, double> totals;  ///< m²/sr, or m² for |C| of pressure
 };
 
 /// Reads a summary.json or a delay.csv. Throws Error(input).

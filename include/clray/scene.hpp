@@ -50,12 +50,12 @@ struct Material {
 
 /// What a mesh reader found; counted from the file's own indices.
 struct MeshReport {
-  std::uint64_t faces = 0;              ///< polygons in the file
-  std::uint64_t triangles = 0;          ///< after triangulation
-  double area_m2 = 0.0;                 ///< sum over all triangles
-  std::uint64_t degenerate = 0;         ///< triangles of zero area
-  std::uint64_t boundary_edges = 0;     ///< edges with one face
-  std::uint64_t non_manifold_edges = 0; ///< edges with more than two faces, or two that disagree in winding
+  std::uint64_t faces = 0;               ///< polygons in the file
+  std::uint64_t triangles = 0;           ///< after triangulation
+  double area_m2 = 0.0;                  ///< sum over all triangles
+  std::uint64_t degenerate = 0;          ///< triangles of zero area
+  std::uint64_t boundary_edges = 0;      ///< edges with one face
+  std::uint64_t non_manifold_edges = 0;  ///< edges with more than two faces, or two that disagree in winding
 };
 
 /// A triangle mesh in metres, in the order of its file.
@@ -66,7 +66,7 @@ struct Mesh {
   std::vector<std::string> material_slots;              ///< names from usemtl; at least one entry, "" if none
   std::vector<Material> file_materials;                 ///< from the MTL; matched to slots by name
   MeshReport report;
-  std::vector<std::string> warnings;                    ///< e.g. a missing MTL, with file:line
+  std::vector<std::string> warnings;  ///< e.g. a missing MTL, with file:line
 };
 
 /// scale, then rotate about `axis` (right-handed), then translate.
@@ -102,18 +102,20 @@ struct Band {
   std::string name;
   double low_nm = 0.0;
   double high_nm = 0.0;
+  /// Transmission of a filter against wavelength, any scale; null: a top hat. Nothing passes outside [low, high].
+  std::shared_ptr<const Spectrum> response = nullptr;
 };
 
 /// The light: parallel, of unit irradiance unless a detector states otherwise.
 struct Source {
   enum class Kind { laser, sun };
   Kind kind = Kind::laser;
-  Vec3 direction{0.0, 0.0, 1.0};      ///< unit vector toward the source
-  double wavelength_nm = 532.0;       ///< of a laser
-  std::vector<Band> bands;            ///< empty: the laser line, or for a sun one band 400-700 nm
-  std::optional<Spectrum> spectrum;   ///< W/m²/nm; a sun without one is Planck at 5772 K
-  double blackbody_K = 0.0;           ///< > 0: Planck at this temperature, scaled to irradiance_W_m2
-  double irradiance_W_m2 = 1361.0;    ///< of a sun or blackbody, all wavelengths
+  Vec3 direction{0.0, 0.0, 1.0};     ///< unit vector toward the source
+  double wavelength_nm = 532.0;      ///< of a laser
+  std::vector<Band> bands;           ///< empty: the laser line, or for a sun one band 400-700 nm
+  std::optional<Spectrum> spectrum;  ///< W/m²/nm; a sun without one is Planck at 5772 K
+  double blackbody_K = 0.0;          ///< > 0: Planck at this temperature, scaled to irradiance_W_m2
+  double irradiance_W_m2 = 1361.0;   ///< of a sun or blackbody, all wavelengths
 };
 
 /// Who looks. `monostatic` puts the observer exactly at the source, whatever the direction says.
@@ -121,7 +123,8 @@ struct Observer {
   std::string name;
   Vec3 direction{0.0, 0.0, 1.0};
   bool monostatic = true;
-  double acceptance_rad = 0.0;        ///< half angle of the cone that collects mirror reflections; 0: none
+  double acceptance_rad = 0.0;  ///< half angle of the cone that collects mirror reflections; 0: none
+  double range_m = 0.0;         ///< distance, for received power and magnitude; 0: that of the station, if any
 };
 
 /// Body-to-space attitude at a time.
@@ -137,24 +140,24 @@ struct Motion {
   double phase_rad = 0.0;
   double start_s = 0.0;
   double stop_s = 0.0;
-  double step_rad = 0.0;              ///< of spin; an orientation is that at its step's start
+  double step_rad = 0.0;  ///< of spin; an orientation is that at its step's start
   std::vector<Attitude> attitudes;
 };
 
 /// A laser-ranging station and its link (PHYSICS section 5); defaults are those printed by a run.
 struct Station {
   std::string name = "clray";
-  double range_m = 1.0e6;                       ///< fixed range, when neither table nor prediction is given
-  std::vector<std::pair<double, double>> ranges;///< (time_s, range_m), increasing time
-  std::string cpf_file;                         ///< an ILRS CPF v2 prediction; needs position_m
-  Vec3 position_m{0.0};                         ///< Earth-fixed
-  double start_mjd = 0.0;                       ///< epoch of session time 0 (UTC); 0: the CPF's first record
+  double range_m = 1.0e6;                         ///< fixed range, when neither table nor prediction is given
+  std::vector<std::pair<double, double>> ranges;  ///< (time_s, range_m), increasing time
+  std::string cpf_file;                           ///< an ILRS CPF v2 prediction; needs position_m
+  Vec3 position_m{0.0};                           ///< Earth-fixed
+  double start_mjd = 0.0;                         ///< epoch of session time 0 (UTC); 0: the CPF's first record
   double pulse_energy_J = 0.08;
-  double pulse_fwhm_s = 0.0;                    ///< 0: a delta pulse
-  std::vector<std::pair<double, double>> pulse; ///< (time_s, relative power) table; overrides fwhm
+  double pulse_fwhm_s = 0.0;                     ///< 0: a delta pulse
+  std::vector<std::pair<double, double>> pulse;  ///< (time_s, relative power) table; overrides fwhm
   double rate_Hz = 2000.0;
-  double aperture_m = 0.5;                      ///< receiver diameter
-  double divergence_rad = 25.0e-6;              ///< 1/e² half-angle
+  double aperture_m = 0.5;          ///< receiver diameter
+  double divergence_rad = 25.0e-6;  ///< 1/e² half-angle
   double pointing_rad = 0.0;
   double eta_q = 1.0, eta_t = 1.0, eta_r = 1.0, T_a = 1.0, T_c = 1.0;
   double noise_per_ns = 0.001;
@@ -162,40 +165,40 @@ struct Station {
   double gate_s = 100.0e-9;
   double jitter_fwhm_s = 0.0;
   double dead_time_s = 0.0;
-  bool flag_signal = false;                     ///< CRD filter flag 1 noise, 2 signal; else 0
+  bool flag_signal = false;  ///< CRD filter flag 1 noise, 2 signal; else 0
 };
 
 /// Replacements of materials under which the same hits are shaded again.
 struct Variant {
   std::string name;
-  std::vector<Material> materials;              ///< replace the scene's materials of the same name
+  std::vector<Material> materials;  ///< replace the scene's materials of the same name
 };
 
 /// Everything a run needs.
 struct Scene {
-  std::string path;                             ///< as given by the user, empty if built by hand
-  std::string name;                             ///< stem of the path
-  Vec3 reference_point{0.0};                    ///< delay zero and torque point, m
+  std::string path;           ///< as given by the user, empty if built by hand
+  std::string name;           ///< stem of the path
+  Vec3 reference_point{0.0};  ///< delay zero and torque point, m
   std::vector<Material> materials;
   std::vector<Component> components;
   std::vector<Variant> variants;
   Source source;
-  std::vector<Observer> observers;              ///< at least one after load_scene()
+  std::vector<Observer> observers;  ///< at least one after load_scene()
   std::optional<Motion> motion;
   std::optional<Station> station;
-  std::vector<DetectorSpec> detectors;          ///< at least one after load_scene()
+  std::vector<DetectorSpec> detectors;  ///< at least one after load_scene()
   TraceOptions trace;
   std::vector<std::string> warnings;
 };
 
 /// What the command line may say about a scene; it overrides the file.
 struct SceneOptions {
-  double length_unit_m = 0.0;                   ///< of mesh files; 0: the file's word, or metres
-  std::string material;                         ///< "model key=value …": overrides every material
+  double length_unit_m = 0.0;  ///< of mesh files; 0: the file's word, or metres
+  std::string material;        ///< "model key=value …": overrides every material
   std::optional<Vec3> source;
   std::optional<Vec3> observer;
   bool observer_at_source = false;
-  std::vector<std::string> detectors;           ///< kinds; replace the file's list
+  std::vector<std::string> detectors;  ///< kinds; replace the file's list
   std::optional<int> bins;
 };
 

@@ -16,31 +16,31 @@ class Device;
 /// When to stop and how to sample. Of rays, target and time whichever comes first; with none of the
 /// three: to 1 % with at least 2^22 rays per orientation.
 struct TraceOptions {
-  int max_bounces = 1;                 ///< surface interactions, 1 … 64
-  std::uint64_t rays = 0;              ///< primary rays per orientation, rounded up to 16·2^k; 0: not given
-  double target_error_percent = 0.0;   ///< 95 % half-width over the value; 0: not given
-  double time_limit_s = 0.0;           ///< of tracing; 0: none
-  std::uint64_t max_rays = 1ull << 32; ///< where a search for a target gives up
+  int max_bounces = 1;                  ///< surface interactions, 1 … 64
+  std::uint64_t rays = 0;               ///< primary rays per orientation, rounded up to 16·2^k; 0: not given
+  double target_error_percent = 0.0;    ///< 95 % half-width over the value; 0: not given
+  double time_limit_s = 0.0;            ///< of tracing; 0: none
+  std::uint64_t max_rays = 1ull << 32;  ///< where a search for a target gives up
   std::uint64_t seed = 1;
-  int replicates = 16;                 ///< independent replicates (the error's degrees of freedom + 1), 2 … 64
-  bool sobol = true;                   ///< false: plain random sampling
-  bool stratify = true;                ///< with sobol: sample what the body can be in, in order of delay
-  bool specialise = true;              ///< false: the generic program (same digest, slower)
-  bool force_bistatic = false;         ///< shadow rays even where the observer is at the source
-  bool allow_failures = false;         ///< report non-finite weights and overflows instead of throwing
+  int replicates = 16;          ///< independent replicates (the error's degrees of freedom + 1), 2 … 64
+  bool sobol = true;            ///< false: plain random sampling
+  bool stratify = true;         ///< with sobol: sample what the body can be in, in order of delay
+  bool specialise = true;       ///< false: the generic program (same digest, slower)
+  bool force_bistatic = false;  ///< shadow rays even where the observer is at the source
+  bool allow_failures = false;  ///< report non-finite weights and overflows instead of throwing
   // For tests of identity; no result depends on them.
   std::uint32_t work_group_size = 64;
-  std::uint64_t slice_points = 0;      ///< points per replicate and launch; 0: sized to slices of at most 0.3 s
+  std::uint64_t slice_points = 0;  ///< points per replicate and launch; 0: sized to slices of at most 0.3 s
 };
 
 /// Where a run stands; passed to the progress callback a few times a second.
 struct Progress {
-  const char* phase = "";              ///< "search", "confirm", "trace", "pictures"
-  double fraction = 0.0;               ///< of this phase, estimated, in [0,1]
+  const char* phase = "";  ///< "search", "confirm", "trace", "pictures"
+  double fraction = 0.0;   ///< of this phase, estimated, in [0,1]
   std::uint64_t rays = 0;
   double rays_per_s = 0.0;
-  double relative_error = 0.0;         ///< 95 % half-width over the value; NaN while unknown
-  double seconds_left = 0.0;           ///< NaN while unknown
+  double relative_error = 0.0;  ///< 95 % half-width over the value; NaN while unknown
+  double seconds_left = 0.0;    ///< NaN while unknown
 };
 
 /// Callbacks of a run. Both may be empty.

@@ -100,7 +100,8 @@ CLRAY_FN ShapeSurface shape_cone_surface(const CLRAY_GLOBAL f64* p, vec3 o, vec3
     s.normal = v3(cos_phi * height / slant, sin_phi * height / slant, -slope / slant);
   } else {
     const f64 rim = part == 1u ? r : top;
-    const f64 keep = f64_max(rim - 2.0 * s.error * (1.0 + fabs(slope) / height), 0.75 * rim);
+    const f64 spare = 2.0 * s.error * (1.0 + fabs(slope) / height);
+    const f64 keep = f64_max(rim - spare, 0.75 * rim);
     s.point = disk_point(o, d, part == 1u ? 0.0 : height, keep);
     s.normal = v3(0.0, 0.0, part == 1u ? -1.0 : 1.0);
   }

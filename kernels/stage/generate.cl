@@ -23,9 +23,9 @@ static Ray stage_generate(const Buffers *g, const Sampler *sampler, const Tally 
     const u32 slot = min((u32)x, view->cells - 1u);
     const __global u32 *entry = g->cells + 2u * (view->first_cell + slot);
     const u32 cell = entry[0], part = entry[1] >> 16, parts = entry[1] & 0xffffu;
-    const u32 grid = max(view->grid, 1u);
-    u[0] = ((f64)(cell % grid) + ((f64)part + (x - (f64)slot)) / (f64)parts) / (f64)grid;
-    u[1] = ((f64)(cell / grid) + u[1]) / (f64)grid;
+    const u32 grid = view->grid;
+    u[0] = ((f64)(cell % max(grid, 1u)) + ((f64)part + (x - (f64)slot)) / (f64)parts) / (f64)grid;
+    u[1] = ((f64)(cell / max(grid, 1u)) + u[1]) / (f64)grid;
     share = 1.0 / (f64)parts;
   }
 #endif
