@@ -9,7 +9,7 @@
 #include "reference/from_scene.hpp"
 #include "reference/sobol.hpp"
 #include "reference/tracer.hpp"
-#include "support/closed_forms.hpp"
+#include "support/checks.hpp"
 
 using namespace clray_test;
 namespace ref = clray_reference;
@@ -57,7 +57,7 @@ TEST_CASE("reference: Lambert plate at an angle, exact total and uniform depth")
     const Pulse exact = lambert_plate(0.5, 2.0, 1.0, radians(degrees));
     // Every ray hits; only rounding and the excluded samples are off.
     const double slack = 1e-12 + 2.0 * static_cast<double>(h.excluded) / 16384;
-    CHECK(total(h) == doctest::Approx(exact.total_m2_per_sr).epsilon(slack));
+    CHECK(total(h) == relative(exact.total_m2_per_sr).epsilon(slack));
     CHECK(h.excluded <= 1);
     for (std::size_t i = 0; i < 63 && degrees > 0.0; ++i) {
       const double t = static_cast<double>(window.first_s + static_cast<ref::Real>(i) * window.bin_s);
@@ -78,7 +78,7 @@ TEST_CASE("reference: polyhedra, monostatic and bistatic, against their facet su
       const auto h = reference_of(scene, ref::vector_of(s), ref::vector_of(o), window, 15);
       // Owen-Sobol totals of silhouettes: about 5·N^(-3/4) of the total (PHYSICS section 6) is 0.2 %; 1 % is 5 of
       // these.
-      CHECK(total(h) == doctest::Approx(exact.total_m2_per_sr).epsilon(0.01));
+      CHECK(total(h) == relative(exact.total_m2_per_sr).epsilon(0.01));
       for (std::size_t i = 0; i < 50; ++i) {
         const double t = static_cast<double>(window.first_s + static_cast<ref::Real>(i) * window.bin_s);
         const double share = exact.share(t + static_cast<double>(window.bin_s)) - exact.share(t);
@@ -98,7 +98,7 @@ TEST_CASE("reference: Ashikhmin-Shirley against the sphere's closed form, and re
     const auto h = reference_of(scene, s, s, {-1e-8L, 2e-8L, 1}, 13);
     // 64 × 32 facets: a facet's normal is off by up to pi/64, which moves a peak of width 1/sqrt(n) by a few
     // per cent at n = 50; this test tells wrong formulas (factors of 2) from right ones.
-    CHECK(total(h) == doctest::Approx(exact).epsilon(0.06));
+    CHECK(total(h) == relative(exact).epsilon(0.06));
   }
   ref::Material m;
   m.model = ref::Material::Model::ashikhmin_shirley;
@@ -113,7 +113,7 @@ TEST_CASE("reference: a plate in another's shadow gets nothing, and a wall shade
   add(scene, moved(plate_mesh(1, 1), {0, 0, 10 - 1e-6}), lambert(0));
   const ref::V3 z{0, 0, 1};
   const auto h = reference_of(scene, z, z, {-1e-6L, 2e-6L, 1}, 12);
-  CHECK(total(h) == doctest::Approx(1.0 / kPi).epsilon(1e-12));
+  CHECK(total(h) == relative(1.0 / kPi).epsilon(1e-12));
   // Floor 1 × 1 seen from above, lit at angle theta over a wall of height 1/2: lit share 1 − tan(theta)/2.
   const double theta = radians(40.0);
   clray::Scene shape = scene_of(plate_mesh(1, 1), lambert(1));
@@ -124,8 +124,8 @@ TEST_CASE("reference: a plate in another's shadow gets nothing, and a wall shade
   const clray::Vec3 s = toward(theta);
   const auto lit = reference_of(shape, ref::vector_of(s), z, {-1e-6L, 2e-6L, 1}, 15);
   const double exact = std::cos(theta) / kPi * (1.0 - 0.5 * std::tan(theta));
-  CHECK(total(lit) == doctest::Approx(exact).epsilon(2e-3));
+  CHECK(total(lit) == relative(exact).epsilon(2e-3));
   // The other way round the wall hides nothing from the light, but part of the floor from the observer.
   const auto seen = reference_of(shape, z, ref::vector_of(s), {-1e-6L, 2e-6L, 1}, 15);
-  CHECK(total(seen) == doctest::Approx(exact).epsilon(2e-3));
+  CHECK(total(seen) == relative(exact).epsilon(2e-3));
 }

@@ -2,6 +2,8 @@
 // Comparison of results with exact answers, in units of the claimed standard error and against a fixed bound.
 #pragma once
 
+#include <doctest/doctest.h>
+
 #include "support/closed_forms.hpp"
 
 namespace clray_test {
@@ -9,6 +11,11 @@ namespace clray_test {
 /// What a comparison allows beyond 4 standard errors, relative: results are sums of integers whose unit is up to
 /// 2⁻³⁷ of the largest weight (DESIGN, Kernels), half of which every sample may be off in the same direction.
 constexpr double kQuantum = 1e-11;
+
+/// A doctest::Approx whose epsilon is relative to the values alone: its own adds 1, and so passes any small number.
+inline doctest::Approx relative(double value) {
+  return doctest::Approx(value).scale(0.0);
+}
 
 /// CHECKs |found − exact| ≤ 4 standard errors (+ kQuantum of `scale`) and ≤ `bound`·|exact|. `dim`: the bound of
 /// weights over the case's own weight, where all weights are alike and far below the bound.
