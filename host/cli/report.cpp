@@ -245,6 +245,17 @@ std::string totals_line(const Result& result) {
     text += member(delay.key, result.orientations.size()) + ": A = " + amount(delay.intensity_m2_per_sr, 1.0, "m²/sr") +
             "\n";
   }
+  for (const auto& s : result.spectrometer) {
+    text += member(s.key, result.orientations.size()) + ": A = " + amount(s.intensity_m2_per_sr, 1.0, "m²/sr") + "\n";
+  }
+  for (const auto& p : result.pressure) {
+    text += member(p.key, result.orientations.size()) + ": C =";
+    for (int axis = 0; axis < 3; ++axis) {
+      text +=
+          (axis ? ", " : " ") + format_with_error(p.coefficient_m2.value[axis], p.coefficient_m2.standard_error[axis]);
+    }
+    text += " m²\n";
+  }
   return text;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The delay camera's files: delay.csv (one row per bin), delay.png (the pulse with its error band), and for several
-// orientations delay-totals.csv and delay.fits (orientation x bin). Delays in ns, densities in m²/sr per ns.
+// orientations delay-totals.csv and delay.fits (orientation x bin); with several bands, files for each. Delays in ns,
+// densities in m²/sr per ns.
 #include <algorithm>
 #include <cmath>
 
@@ -20,31 +21,37 @@ double at(const std::vector<double>& values, std::size_t i) {
   return i < values.size() ? values[i] : std::nan("");
 }
 
+std::string title_of(const Writer& writer, const ResultKey& key) {
+  return writer.title("delay", key) + (key.band.empty() ? "" : ", " + key.band + " nm");
+}
+
 void delay_row(TableFile& table, const DelayResult& delay, std::size_t bin, bool photons) {
   const double width_ns = delay.bin_width_s * 1e9;
   table.cell((delay.first_bin_start_s + (static_cast<double>(bin) + 0.5) * delay.bin_width_s) * 1e9);
   table.cell(delay.bin_m2_per_sr[bin] / width_ns).cell(at(delay.bin_standard_error, bin) / width_ns);
   table.cell(bin < delay.hits.size() ? delay.hits[bin] : std::uint64_t{0});
-  table.cell(std::uint64_t{bin < delay.resolved.size() && delay.resolved[bin]});
+  const bool resolved = bin < delay.resolved.size() && delay.resolved[bin];
+  table.cell(std::uint64_t{resolved});
+  table.cell(resolved ? std::nan("") : at(delay.bin_upper_bound, bin) / width_ns);
   if (photons) table.cell(at(delay.photons_per_ns, bin));
   table.end_row();
 }
 
 void delay_table(Writer& writer, const Group& group, const std::string& stem) {
   const bool several = group.size() > 1, photons = !group.front()->photons_per_ns.empty();
-  auto table =
-      writer.table(writer.add(stem, "csv"), "delay histogram A(t) of " + writer.title("delay", group.front()->key),
-                   "delay_ns: bin centres, ns after a path by way of the reference point; "
-                   "intensity and standard_error: m^2/sr per ns" +
-                       std::string(photons ? "; photons_per_ns: expected at the station" : ""));
+  auto table = writer.table(writer.add(stem, "csv"), "delay histogram A(t) of " + title_of(writer, group.front()->key),
+                            "delay_ns: bin centres, ns after a path by way of the reference point; "
+                            "intensity, standard_error and upper_bound: m^2/sr per ns" +
+                                std::string(photons ? "; photons_per_ns: expected at the station" : ""));
   if (!several) {
     const auto& delay = *group.front();
     table.comment("total_m2_per_sr: " + number(delay.intensity_m2_per_sr.value) + " with standard error " +
                   number(delay.intensity_m2_per_sr.standard_error) + ", of which below the first bin " +
                   number(delay.below_m2_per_sr) + " and above the last " + number(delay.above_m2_per_sr));
   }
-  table.comment("resolved: 0 where a bin was hit too seldom for its error to be trusted");
-  std::vector<std::string> columns{"delay_ns", "intensity_m2_per_sr_per_ns", "standard_error", "hits", "resolved"};
+  table.comment("resolved: 0 where a bin was hit too seldom for its error to be trusted; it gets a 95 % upper_bound");
+  std::vector<std::string> columns{"delay_ns",   "intensity_m2_per_sr_per_ns", "standard_error", "hits", "resolved",
+                                   "upper_bound"};
   if (photons) columns.push_back("photons_per_ns");
   if (several) columns.insert(columns.begin(), {"orientation", "time_s"});
   table.columns(columns);
@@ -59,7 +66,7 @@ void delay_table(Writer& writer, const Group& group, const std::string& stem) {
 
 void totals_table(Writer& writer, const Group& group, const std::string& stem) {
   auto table = writer.table(
-      writer.add(stem + "-totals", "csv"), "totals per orientation of " + writer.title("delay", group.front()->key),
+      writer.add(stem + "-totals", "csv"), "totals per orientation of " + title_of(writer, group.front()->key),
       "time s; intensity m^2/sr; cross-section m^2; delays ns; low and high bound the 95 % interval");
   table.columns({"orientation", "time_s", "intensity_m2_per_sr", "standard_error", "low", "high", "cross_section_m2",
                  "mean_delay_ns", "mean_delay_standard_error_ns", "rms_width_ns", "rms_width_standard_error_ns"});
@@ -166,16 +173,30 @@ bool monostatic(const Writer& writer, const ResultKey& key) {
   return false;
 }
 
-void pulse_data(Plot& plot, const Curve& curve) {
+/// Where the axis of A begins: 0, or, where one bright line would press the rest flat, a positive number below the
+/// faint part, for a logarithmic axis.
+double axis_floor(const Curve& curve) {
+  std::vector<double> lit;
+  for (const double value : curve.value) {
+    if (value > 0.0 && std::isfinite(value)) lit.push_back(value);
+  }
+  if (lit.size() < 8) return 0.0;
+  std::sort(lit.begin(), lit.end());
+  const double top = lit.back(), middle = lit[lit.size() / 2];
+  return top > 100.0 * middle ? std::max(0.3 * lit[lit.size() / 50], 1e-8 * top) : 0.0;
+}
+
+void pulse_data(Plot& plot, const Curve& curve, double floor) {
   plot.begin_data("pulse");
-  plot.point({curve.start, 0.0, 0.0, 0.0});
+  plot.point({curve.start, floor, floor, floor});
   for (std::size_t i = 0; i < curve.value.size(); ++i) {
-    const double low = std::max(0.0, curve.value[i] - curve.error[i]), high = curve.value[i] + curve.error[i];
+    const double value = std::max(floor, curve.value[i]), low = std::max(floor, curve.value[i] - curve.error[i]);
+    const double high = std::max(floor, curve.value[i] + curve.error[i]);
     for (const std::size_t edge : {i, i + 1}) {
-      plot.point({curve.start + static_cast<double>(edge) * curve.width, curve.value[i], low, high});
+      plot.point({curve.start + static_cast<double>(edge) * curve.width, value, low, high});
     }
   }
-  plot.point({curve.start + static_cast<double>(curve.value.size()) * curve.width, 0.0, 0.0, 0.0});
+  plot.point({curve.start + static_cast<double>(curve.value.size()) * curve.width, floor, floor, floor});
   plot.end_data();
 }
 
@@ -199,13 +220,14 @@ void pulse_picture(Writer& writer, const DelayResult& delay, const std::string& 
   const Curve curve = curve_of(delay, unit.per_second, 2400);
   const std::string name = writer.add(stem, "png");
   Plot plot(name);
-  pulse_data(plot, curve);
+  const double floor = axis_floor(curve);
+  pulse_data(plot, curve, floor);
   const bool any_unresolved = bound_data(plot, curve);
   const double top = highest(curve);
   const auto estimate = [&](const Estimate& e, double scale) {
     return format_with_error(e.value * scale, e.standard_error * scale);
   };
-  plot.line("set label 1 " + gnuplot_text(writer.title("delay", delay.key)) +
+  plot.line("set label 1 " + gnuplot_text(title_of(writer, delay.key)) +
             " at screen 0.54, 0.97 center font ',19' textcolor '#000000'");
   plot.line("set label 2 " +
             gnuplot_text("A = " + estimate(a, 1.0) + " m²/sr    σ = " + estimate(a, 4.0 * kPi) + " m²    mean " +
@@ -219,7 +241,12 @@ void pulse_picture(Writer& writer, const DelayResult& delay, const std::string& 
   const bool depths = monostatic(writer, delay.key) && end > curve.start;
   if (depths) depth_axis(plot, unit.per_second, curve.start, end);
   // Room above the curve for the key.
-  plot.line(top > 0.0 ? "set yrange [0:" + number(top * 1.16) + "]" : "set yrange [0:1]");
+  if (floor > 0.0) {
+    plot.line("set logscale y; set format y '10^{%T}'");
+    plot.line("set yrange [" + number(floor) + ":" + number(top * std::pow(top / floor, 0.16)) + "]");
+  } else {
+    plot.line(top > 0.0 ? "set yrange [0:" + number(top * 1.16) + "]" : "set yrange [0:1]");
+  }
   if (!(top > 0.0)) {
     plot.line("set label 3 'nothing came back' at graph 0.5, graph 0.5 center font ',20' textcolor '#888888'");
   }
@@ -266,7 +293,7 @@ void map_picture(Writer& writer, const Group& group, const std::string& stem) {
   }
   plot.end_data();
   plot.line("set title " +
-            gnuplot_text(writer.title("delay", first.key) + ": " + std::to_string(group.size()) + " orientations") +
+            gnuplot_text(title_of(writer, first.key) + ": " + std::to_string(group.size()) + " orientations") +
             " font ',18'");
   plot.line(by_time ? "set xlabel 'time (s)'" : "set xlabel 'orientation'");
   plot.line("set ylabel 'delay after a path by way of the reference point (" + std::string(unit.name) + ")'");
@@ -278,11 +305,27 @@ void map_picture(Writer& writer, const Group& group, const std::string& stem) {
   writer.draw(plot, name);
 }
 
+/// Histograms of several bands are not orientations of one another: each band is a group of its own.
+std::vector<Group> groups_by_band(const std::vector<DelayResult>& records) {
+  std::vector<Group> found;
+  for (const auto& group : groups(records)) {
+    const std::size_t first = found.size();
+    for (const auto* record : group) {
+      auto place = found.begin() + static_cast<std::ptrdiff_t>(first);
+      while (place != found.end() && place->front()->key.band != record->key.band) ++place;
+      if (place == found.end()) place = found.insert(place, Group{});
+      place->push_back(record);
+    }
+  }
+  return found;
+}
+
 }  // namespace
 
 void write_delay(Writer& writer) {
-  for (const auto& group : groups(writer.result.delay)) {
-    const std::string stem = writer.stem("delay", group.front()->key);
+  for (const auto& group : groups_by_band(writer.result.delay)) {
+    const ResultKey& key = group.front()->key;
+    const std::string stem = writer.stem("delay", key) + (key.band.empty() ? "" : "-" + file_name_part(key.band));
     delay_table(writer, group, stem);
     if (group.size() > 1) {
       totals_table(writer, group, stem);

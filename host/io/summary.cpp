@@ -181,17 +181,19 @@ Json totals_of(const Writer& writer) {
   return list;
 }
 
+/// The counts of paths; the energies too where they were kept (several bounces or a pressure detector): zeros for what
+/// nobody measured would read as a finding.
 Json energy_of(const EnergyBooks& books) {
-  return {{"incident_m2", value_and_error(books.incident_m2)},
-          {"reflected_m2", value_and_error(books.reflected_m2)},
-          {"absorbed_m2", value_and_error(books.absorbed_m2)},
-          {"roulette_m2", value_and_error(books.roulette_m2)},
-          {"truncated_m2", value_and_error(books.truncated_m2)},
-          {"unconnected_specular_m2", value_and_error(books.unconnected_specular_m2)},
-          {"started", books.started},
-          {"escaped", books.escaped},
-          {"killed", books.killed},
-          {"capped", books.capped}};
+  Json entry{
+      {"started", books.started}, {"escaped", books.escaped}, {"killed", books.killed}, {"capped", books.capped}};
+  if (!(books.incident_m2.value > 0.0)) return entry;
+  entry.update({{"incident_m2", value_and_error(books.incident_m2)},
+                {"reflected_m2", value_and_error(books.reflected_m2)},
+                {"absorbed_m2", value_and_error(books.absorbed_m2)},
+                {"roulette_m2", value_and_error(books.roulette_m2)},
+                {"truncated_m2", value_and_error(books.truncated_m2)},
+                {"unconnected_specular_m2", value_and_error(books.unconnected_specular_m2)}});
+  return entry;
 }
 
 Json head_of(const Writer& writer) {

@@ -77,8 +77,8 @@ TEST_CASE("delay.csv: columns, comments and numbers read back exactly") {
   const auto files = write_result(result, io_test::scene(), scratch / "out", no_plots());
   CHECK(files == std::vector<std::string>{"delay.csv", "error.csv", "summary.json"});
   const Table table = read_table(scratch / "out/delay.csv");
-  CHECK(table.columns ==
-        std::vector<std::string>{"delay_ns", "intensity_m2_per_sr_per_ns", "standard_error", "hits", "resolved"});
+  CHECK(table.columns == std::vector<std::string>{"delay_ns", "intensity_m2_per_sr_per_ns", "standard_error", "hits",
+                                                  "resolved", "upper_bound"});
   const auto comments = slurp(scratch / "out/delay.csv");
   for (const char* part : {"# what: ", "# units: ", "# scene: meshes/plate.toml\n", "# seed: 18446744073709551615\n",
                            "# digest: 00000000deadbeef\n"}) {
@@ -94,6 +94,7 @@ TEST_CASE("delay.csv: columns, comments and numbers read back exactly") {
     CHECK(parse(table.rows[i][2]) == d.bin_standard_error[i] / width_ns);
     CHECK(table.rows[i][3] == std::to_string(i * 5));
     CHECK(table.rows[i][4] == (i >= 2 ? "1" : "0"));
+    if (i < 2) CHECK(parse(table.rows[i][5]) == d.bin_upper_bound[i] / width_ns);
   }
 }
 
@@ -106,6 +107,21 @@ TEST_CASE("delay.csv: a column of photons where a station gave them") {
   const Table table = read_table(scratch / "out/delay.csv");
   REQUIRE(table.columns.back() == "photons_per_ns");
   for (std::size_t i = 0; i < 3; ++i) CHECK(parse(table.rows[i].back()) == result.delay.front().photons_per_ns[i]);
+}
+
+TEST_CASE("several bands: a table each, none taken for an orientation") {
+  Scratch scratch;
+  Result result = io_test::result();
+  for (const char* band : {"400-500", "500-600"}) {
+    result.delay.push_back(delay(4));
+    result.delay.back().key.band = band;
+  }
+  write_result(result, io_test::scene(), scratch / "out", no_plots());
+  for (const char* file : {"out/delay-400-500.csv", "out/delay-500-600.csv"}) {
+    const Table table = read_table(scratch / file);
+    CHECK(table.rows.size() == 4);
+    CHECK(table.columns[0] == "delay_ns");
+  }
 }
 
 TEST_CASE("several orientations and observers: rows carry their orientation, files their observer") {
