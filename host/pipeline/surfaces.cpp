@@ -64,8 +64,7 @@ Surfaces build_surfaces(const Scene& scene, const std::vector<Lane>& lanes, bool
       const int row = table_index("brdf", m.model);
       if (row < 0) throw Error(ErrorCode::input, "unknown model \"" + m.model + "\"", "material " + m.name);
       std::map<std::string, double> parameters = m.parameters;
-      for (const auto& [key, spectrum] : m.spectra)
-        parameters[key] = spectrum_mean(spectrum, lane.band, scene.source);
+      for (const auto& [key, spectrum] : m.spectra) parameters[key] = spectrum_mean(spectrum, lane.band, scene.source);
       const std::vector<double> values = row_values(table("brdf")[row], parameters);
       ClrayMaterial out{};
       out.model = static_cast<std::uint32_t>(row);
