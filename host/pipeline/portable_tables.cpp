@@ -9,11 +9,11 @@ namespace portable {
 
 // clang-format off: models before what calls them
 #include "brdf/brdf.h"
-#include "brdf/dispatch.cl"
 #include "generated/brdf_all.inc"
+#include "brdf/dispatch.cl"
+#include "shape/shape.h"
 #include "generated/shape_all.inc"
 #include "shape/dispatch.cl"
-#include "shape/shape.h"
 // clang-format on
 
 }  // namespace portable
