@@ -34,7 +34,7 @@ double spectrum_at(const Spectrum& spectrum, double wavelength_nm) {
 }
 
 double source_weight(const Source& source, double wavelength_nm) {
-  if (source.spectrum) return spectrum_at(*source.spectrum, wavelength_nm);
+  if (source.spectrum && source.blackbody_K <= 0.0) return spectrum_at(*source.spectrum, wavelength_nm);
   if (source.blackbody_K > 0.0) return planck(wavelength_nm, source.blackbody_K);
   return source.kind == Source::Kind::sun ? planck(wavelength_nm, 5772.0) : 1.0;
 }
@@ -66,7 +66,7 @@ Vec3 band_colour(const Band& band, const Source& source) {
   double weight = 0.0;
   for (int i = 0; i < steps; ++i) {
     const double w = band.low_nm + (i + 0.5) * (band.high_nm - band.low_nm) / steps;
-    const double share = source_weight(source, w);
+    const double share = source_weight(source, w) * (band.response ? spectrum_at(*band.response, w) : 1.0);
     sum += share * colour_matching(w);
     weight += share;
   }

@@ -22,11 +22,17 @@ std::string band_name(const SpectrometerResult& record) {
   return !name.empty() ? name : rounded(record.band.low_nm, 6) + "-" + rounded(record.band.high_nm, 6);
 }
 
+/// The name with its unit where it is a range of wavelengths.
+std::string band_label(const SpectrometerResult& record) {
+  const std::string name = band_name(record);
+  return name.find_first_not_of("0123456789.-") == std::string::npos ? name + " nm" : name;
+}
+
 void spectrum_table(Writer& writer, const Group& group, const std::string& stem, bool moving) {
   auto table = writer.table(
       writer.add(stem, "csv"), "intensity per wavelength band of " + writer.title("spectrometer", group.front()->key),
       "wavelengths nm; intensity m^2/sr per unit irradiance in the band; source and received W/m^2 in the "
-      "band; magnitude AB (zero point 3631 Jy, averaged over the band)");
+      "band; magnitude AB: 0 is what 3631 Jy at every frequency gives through the same band, in energy");
   table.comment("received_W_m2 is 0 and magnitudes are nan where the scene states no range");
   std::vector<std::string> columns{"band",           "low_nm",
                                    "high_nm",        "intensity_m2_per_sr",
@@ -117,7 +123,7 @@ void lightcurve_picture(Writer& writer, const std::vector<Group>& bands, const s
     const std::string colour = std::string("linecolor '") + kColours[b % std::size(kColours)] + "'";
     command += (b ? ", $" : "$") + data + " using 1:2:3 with yerrorbars pointtype 7 pointsize 0.5 linewidth 1 " +
                colour + " notitle, $" + data + " using 1:2 with lines linewidth 1.2 " + colour +
-               (bands.size() > 1 ? " title " + gnuplot_text(band_name(*bands[b].front()) + " nm") : " notitle");
+               (bands.size() > 1 ? " title " + gnuplot_text(band_label(*bands[b].front())) : " notitle");
   }
   plot.line("set title " + gnuplot_text(writer.title("spectrometer", bands.front().front()->key) + ": light curve") +
             " font ',18'");

@@ -51,32 +51,56 @@ void pressure_table(Writer& writer, const Group& group, const std::string& stem)
   table.close();
 }
 
-bool even_grid(const Group& group, std::size_t& columns, std::size_t& rows) {
-  std::map<long, int> azimuths, elevations;
+/// A direction of the map and |C| there.
+struct Spot {
+  double azimuth, elevation, size;
+};
+
+long micro(double degrees) {
+  return std::lround(degrees * 1e6);
+}
+
+/// The group's directions by elevation, then azimuth; a pole, which has one azimuth, fills its row.
+std::vector<Spot> spots_of(const Group& group) {
+  std::vector<Spot> spots;
+  std::map<long, double> azimuths;
+  const auto pole = [](double elevation) { return std::abs(micro(elevation)) == 90000000; };
   for (const auto* record : group) {
-    ++azimuths[std::lround(azimuth_deg(record->sun) * 1e6)];
-    ++elevations[std::lround(elevation_deg(record->sun) * 1e6)];
+    spots.push_back({azimuth_deg(record->sun), elevation_deg(record->sun), length(record->coefficient_m2.value)});
+    if (!pole(spots.back().elevation)) azimuths[micro(spots.back().azimuth)] = spots.back().azimuth;
   }
-  columns = azimuths.size();
-  rows = elevations.size();
-  return columns > 1 && rows > 1 && columns * rows == group.size();
+  std::vector<Spot> all;
+  for (const Spot& spot : spots) {
+    if (!pole(spot.elevation) || azimuths.empty()) {
+      all.push_back(spot);
+      continue;
+    }
+    for (const auto& each : azimuths) all.push_back({each.second, spot.elevation, spot.size});
+  }
+  std::stable_sort(all.begin(), all.end(), [](const Spot& a, const Spot& b) {
+    return micro(a.elevation) != micro(b.elevation) ? a.elevation < b.elevation : a.azimuth < b.azimuth;
+  });
+  return all;
+}
+
+bool even_grid(const std::vector<Spot>& spots) {
+  std::map<long, int> azimuths, elevations;
+  for (const Spot& spot : spots) {
+    ++azimuths[micro(spot.azimuth)];
+    ++elevations[micro(spot.elevation)];
+  }
+  const std::size_t columns = azimuths.size(), rows = elevations.size();
+  return columns > 1 && rows > 1 && columns * rows == spots.size();
 }
 
 /// Map of |C|; a grid that is regular in both angles becomes tiles, any other set of directions points.
 void map_picture(Writer& writer, const Group& group, const std::string& stem) {
-  std::size_t columns = 0, rows = 0;
-  const bool tiles = even_grid(group, columns, rows);
-  auto sorted = group;
-  std::stable_sort(sorted.begin(), sorted.end(), [](const auto* a, const auto* b) {
-    const long ea = std::lround(elevation_deg(a->sun) * 1e6), eb = std::lround(elevation_deg(b->sun) * 1e6);
-    return ea != eb ? ea < eb : azimuth_deg(a->sun) < azimuth_deg(b->sun);
-  });
+  const std::vector<Spot> spots = spots_of(group);
+  const bool tiles = even_grid(spots);
   const std::string name = writer.add(stem, "png");
   Plot plot(name);
   plot.begin_data("map");
-  for (const auto* record : sorted) {
-    plot.point({azimuth_deg(record->sun), elevation_deg(record->sun), length(record->coefficient_m2.value)});
-  }
+  for (const Spot& spot : spots) plot.point({spot.azimuth, spot.elevation, spot.size});
   plot.end_data();
   plot.line("set title " +
             gnuplot_text(writer.title("pressure", group.front()->key) + ": radiation force by direction of the Sun") +

@@ -162,7 +162,19 @@ std::string source_text(const Scene& scene) {
                                 : fmt::format("black body of {:.6g} K, {:.6g} W/m2",
                                               s.blackbody_K > 0.0 ? s.blackbody_K : 5772.0, s.irradiance_W_m2);
   std::string text = fmt::format("sun toward {}, {}; bands", vector_text(s.direction), light);
-  for (const Band& b : bands_of(scene)) text += fmt::format(" {} nm ({:.6g} W/m2)", b.name, source_band_W_m2(s, b));
+  const std::vector<Band> bands = bands_of(scene);
+  constexpr std::size_t kMost = 8;
+  for (std::size_t i = 0; i < std::min(bands.size(), kMost); ++i) {
+    const Band& b = bands[i];
+    const std::string range = b.response ? fmt::format("{} (curve {:.6g}-{:.6g} nm", b.name, b.low_nm, b.high_nm)
+                              : b.name == make_band(b.low_nm, b.high_nm).name
+                                  ? b.name + " nm ("
+                                  : fmt::format("{} ({:.6g}-{:.6g} nm", b.name, b.low_nm, b.high_nm);
+    text += fmt::format("{} {}{}{:.6g} W/m2)", i > 0 ? "," : "", range, range.back() == '(' ? "" : ", ",
+                        source_band_W_m2(s, b));
+  }
+  if (bands.size() > kMost)
+    text += fmt::format(" and {} more up to {:.6g} nm", bands.size() - kMost, bands.back().high_nm);
   return text;
 }
 
@@ -208,6 +220,7 @@ std::string describe_scene(const Scene& scene) {
   lines.add({"source", source_text(scene)});
   for (const Observer& o : scene.observers) {
     std::string text = o.monostatic ? "at the source" : "toward " + vector_text(o.direction);
+    if (o.range_m > 0.0) text += fmt::format(", at {:.6g} m", o.range_m);
     if (o.acceptance_rad > 0.0) text += fmt::format(", cone of {:.6g} mrad", o.acceptance_rad * 1e3);
     lines.add({"observer", o.name.empty() ? text : o.name + ": " + text});
   }

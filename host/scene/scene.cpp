@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // load_scene(): a scene file or a bare mesh, then what the command line says, then the checks. A bare mesh is seen
-// from +z by a monostatic 532 nm station with the detector `delay`, Lambert rho = 0.5 where no MTL speaks.
+// from +z by a monostatic 532 nm station with the detector `delay`, Lambert rho = 0.5 where no MTL speaks; if only
+// pictures are asked for, it is lit by the Sun from over the viewer's shoulder.
 #include "clray/scene.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <glm/geometric.hpp>
 
 #include "clray/error.hpp"
 #include "scene/material.hpp"
@@ -46,6 +48,24 @@ Vec3 option_direction(const Vec3& v, const std::string& option) {
   const Vec3 u(v.x / largest, v.y / largest, v.z / largest);
   const double length = std::sqrt(u.x * u.x + u.y * u.y + u.z * u.z);
   return {u.x / length, u.y / length, u.z / length};
+}
+
+/// A bare mesh of which only pictures are asked is lit by the Sun from over the viewer's left shoulder: light that
+/// comes from the viewer's own eye, as a laser station's does, shows no relief.
+void light_for_pictures(const SceneOptions& options, Scene* scene) {
+  const bool pictures = std::all_of(scene->detectors.begin(), scene->detectors.end(), [](const DetectorSpec& d) {
+    return table("detector")[static_cast<std::size_t>(table_index("detector", d.kind))].side == "pixel";
+  });
+  if (!pictures || options.source || options.observer_at_source) return;
+  scene->source.kind = Source::Kind::sun;
+  Observer& observer = scene->observers.front();
+  observer.monostatic = false;
+  const Vec3 o = observer.direction;
+  // The picture's own axes (host/pipeline/views.cpp): up is +y, or ±z where the view is along it.
+  Vec3 up(0.0, 1.0, 0.0);
+  if (std::fabs(o.y) > 0.999) up = Vec3(0.0, 0.0, o.y > 0.0 ? -1.0 : 1.0);
+  const Vec3 right = glm::normalize(glm::cross(up, o));
+  scene->source.direction = glm::normalize(o - 0.35 * right + 0.45 * glm::cross(o, right));
 }
 
 /// The kinds asked for; a kind that the file has too keeps the file's options.
@@ -130,6 +150,7 @@ Scene load_scene(const std::string& path, const SceneOptions& options) {
   if (!fs::is_regular_file(path, error)) throw Error(ErrorCode::input, "there is no such file", path);
   Scene scene = mesh ? bare_mesh(path, options) : read_scene_file(path, options);
   apply_options(options, &scene);
+  if (mesh) light_for_pictures(options, &scene);
   check_scene(scene);
   return scene;
 }

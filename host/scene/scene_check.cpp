@@ -154,6 +154,7 @@ void check_source(const Source& s) {
   for (const Band& b : s.bands) {
     check_number("source.bands", b.low_nm, kPositive);
     check_number("source.bands", b.high_nm, {b.low_nm, kInfinity, false, false});
+    if (b.response) check_spectrum("source.bands.response", *b.response, nullptr);
   }
   const std::string fault = source_fault(s);
   if (!fault.empty()) fail("source.bands", fault);
@@ -304,6 +305,7 @@ void check_scene(const Scene& scene) {
     const std::string where = fmt::format("observers[{}]", i);
     if (!scene.observers[i].monostatic) check_unit(where + ".direction", scene.observers[i].direction);
     check_number(where + ".acceptance_rad", scene.observers[i].acceptance_rad, {0.0, 3.141592653589794, true, true});
+    check_number(where + ".range_m", scene.observers[i].range_m, kNotNegative);
   }
   for (std::size_t i = 0; i < scene.detectors.size(); ++i) {
     const std::string where = fmt::format("detectors[{}]", i);

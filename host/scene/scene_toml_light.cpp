@@ -3,6 +3,9 @@
 // Files carry the units of their key names; the structs are in SI.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <filesystem>
+
 #include "clray/error.hpp"
 #include "scene/motion.hpp"
 #include "scene/scene_csv.hpp"
@@ -18,34 +21,93 @@ double radians(double degrees) {
   return degrees / 180.0 * CLRAY_PI;
 }
 
-/// One band: [low, high] or { name, low_nm, high_nm }.
-Band read_band(TomlTable& t, const toml::node& node) {
-  const Range range{0.0, 1e7, false, true};
-  if (const toml::table* named = node.as_table()) {
-    TomlTable b(*named, "source.bands", t.scene_file());
-    const double low = b.number("low_nm", range), high = b.number("high_nm", range);
+constexpr Range kWavelength{0.0, 1e7, false, true};
+
+/// A band from a filter's curve, called `name` or, if that is empty, like its file.
+Band curve_band(TomlTable& t, const std::string& key, std::string name) {
+  const std::string file = t.file(key);
+  Spectrum curve = read_spectrum(file, 0.0, 1e300);
+  const bool some = std::any_of(curve.value.begin(), curve.value.end(), [](double v) { return v > 0.0; });
+  if (curve.value.size() < 2 || !some) {
+    throw Error(ErrorCode::input, "expected a filter's curve: at least two rows, and some light passed", file);
+  }
+  if (name.empty()) name = std::filesystem::path(file).stem().string();
+  return make_band(name, std::move(curve));
+}
+
+/// { name, low_nm, high_nm } or { name, file }.
+Band table_band(TomlTable b) {
+  b.know({"low_nm", "high_nm", "file"});
+  const std::string given = b.name("name", "");
+  Band band;
+  if (b.has("file")) {
+    for (const char* key : {"low_nm", "high_nm"}) {
+      if (b.has(key)) b.fail(key, "given beside file; the curve has its own ends");
+    }
+    band = curve_band(b, "file", given);
+  } else {
+    const double low = b.number("low_nm", kWavelength), high = b.number("high_nm", kWavelength);
     if (!(low < high)) b.fail("high_nm", fmt::format("expected more than low_nm = {}, found {}", low, high));
-    Band band = make_band(low, high);
-    band.name = b.name("name", band.name);
-    b.finish();
-    return band;
+    band = make_band(low, high);
+    if (!given.empty()) band.name = given;
+  }
+  b.finish();
+  return band;
+}
+
+/// One band: [low, high], "curve.csv", or a table.
+Band read_band(TomlTable& t, const toml::node& node) {
+  if (const toml::table* named = node.as_table()) return table_band(TomlTable(*named, "source.bands", t.scene_file()));
+  if (node.is_string()) {
+    // A table of one entry, so that files are found and faults told in one place.
+    toml::table one;
+    one.insert("bands", *node.as_string());
+    TomlTable entry(one, "source", t.scene_file());
+    try {
+      return curve_band(entry, "bands", "");
+    } catch (const Error& e) {
+      if (e.message().rfind("source.bands: ", 0) != 0) throw;
+      t.fail_at(node.source(), e.message());
+    }
   }
   const toml::array* pair = node.as_array();
   if (pair == nullptr || pair->size() != 2) {
-    t.fail_at(node.source(), "source.bands: expected [low_nm, high_nm], found " + found(node));
+    t.fail_at(node.source(), "source.bands: expected [low_nm, high_nm] or the file of a curve, found " + found(node));
   }
-  const double low = t.number_of(*pair->get(0), "bands", range), high = t.number_of(*pair->get(1), "bands", range);
+  const double low = t.number_of(*pair->get(0), "bands", kWavelength);
+  const double high = t.number_of(*pair->get(1), "bands", kWavelength);
   if (!(low < high)) {
     t.fail_at(pair->get(1)->source(), fmt::format("source.bands: expected more than {}, found {}", low, high));
   }
   return make_band(low, high);
 }
 
+/// { low_nm, high_nm, count }: so many bands of equal width side by side.
+void read_even_bands(TomlTable t, Source* s) {
+  const double low = t.number("low_nm", kWavelength), high = t.number("high_nm", kWavelength);
+  if (!(low < high)) t.fail("high_nm", fmt::format("expected more than low_nm = {}, found {}", low, high));
+  const std::uint64_t count = t.whole("count", 1, 4096, std::nullopt);
+  t.finish();
+  const double n = static_cast<double>(count);
+  const auto edge = [&](std::uint64_t i) {
+    const double share = static_cast<double>(i) / n;
+    return i == count ? high : low + (high - low) * share;
+  };
+  for (std::uint64_t i = 0; i < count; ++i) {
+    s->bands.push_back(make_band(edge(i), edge(i + 1)));
+    s->bands.back().name = fmt::format("{:.6g}-{:.6g}", edge(i), edge(i + 1));
+    if (i > 0 && s->bands[i].name == s->bands[i - 1].name) t.fail("count", "the bands are too narrow to be told apart");
+  }
+}
+
 void read_bands(TomlTable& t, Source* s) {
   const toml::node* value = t.node("bands");
   if (value == nullptr) return;
+  if (value->is_table()) return read_even_bands(*t.table("bands"), s);
   const toml::array* array = value->as_array();
-  if (array == nullptr || array->empty()) t.fail("bands", "expected [[low_nm, high_nm], …], found " + found(*value));
+  if (array == nullptr || array->empty()) {
+    t.fail("bands", "expected [[low_nm, high_nm], …] or { low_nm, high_nm, count }, found " + found(*value));
+  }
   for (const toml::node& each : *array) {
     const Band band = read_band(t, each);
     for (const Band& other : s->bands) {
@@ -132,6 +194,7 @@ void read_observers(TomlTable& root, Scene* scene) {
     }
     if (o.monostatic) o.direction = scene->source.direction;
     o.acceptance_rad = t.number("acceptance_mrad", {0.0, 3141.592653589793, true, true}, 0.0) / 1e3;
+    if (t.has("range_m")) o.range_m = t.number("range_m", kPositive);
     t.finish();
     for (const Observer& other : scene->observers) {
       if (other.name != o.name) continue;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Quantities against wavelength: values and exact means of tables, the light of a source within a band, and the
-// bands of a scene. Wavelengths in nm, irradiance in W/m².
+// Quantities against wavelength: values and means of tables, the light of a source within a band, the bands of a
+// scene, and the zero point of magnitudes. Wavelengths in nm, irradiance in W/m².
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "clray/scene.hpp"
@@ -15,9 +16,20 @@ double spectrum_at(const Spectrum& spectrum, double wavelength_nm);
 /// Mean over [low, high], the exact integral of the piecewise linear function; the value where low == high.
 double spectrum_mean(const Spectrum& spectrum, double low_nm, double high_nm);
 
-/// Irradiance of the source within a band, W/m². A laser has unit irradiance, all of it in its line: 1 if the band
-/// holds wavelength_nm (ends included), else 0. A sun is its spectrum table (nothing beyond its ends), else a black
-/// body of blackbody_K (5772 K unless given) scaled to irradiance_W_m2 over all wavelengths.
+/// Mean over a band as its detector sees it: weighted by the source's light and the band's response, so that mean times
+/// source_band_W_m2() is what comes through. For a laser, or a band of no width or light, spectrum_mean().
+double spectrum_mean(const Spectrum& spectrum, const Band& band, const Source& source);
+
+/// Transmission of a band at a wavelength: its response (1 without one), 0 outside the band.
+double response_at(const Band& band, double wavelength_nm);
+
+/// Irradiance within a band of what has the AB magnitude 0: 3631 Jy at every frequency (Oke & Gunn 1983), weighted by
+/// the band's response in energy, W/m². 0 for a band of no width.
+double ab_zero_W_m2(const Band& band);
+
+/// Irradiance of the source that passes a band, W/m². A laser has unit irradiance, all of it in its line: 1 if the band
+/// holds wavelength_nm (ends included), else 0; times the band's response. A sun is its spectrum table (nothing beyond
+/// its ends), else a black body of blackbody_K (5772 K unless given) scaled to irradiance_W_m2 over all wavelengths.
 double source_band_W_m2(const Source& source, const Band& band);
 
 /// Spectral irradiance of a sun at a wavelength, W/m²/nm; zero for a laser, which has a line.
@@ -28,5 +40,8 @@ std::vector<Band> bands_of(const Scene& scene);
 
 /// A band named by its range, "400-500", or "532" if it has no width.
 Band make_band(double low_nm, double high_nm);
+
+/// A band that passes what a filter's curve does, from its first wavelength to its last.
+Band make_band(const std::string& name, Spectrum response);
 
 }  // namespace clray
