@@ -214,11 +214,30 @@ struct BrdfInput {
   std::vector<double> in;
 };
 
+/// Sets with all bits in use: products with round numbers are often exact and would hide a rounding.
+std::vector<brdf_test::Model> random_models() {
+  Random random(41);
+  std::vector<brdf_test::Model> all;
+  const auto& rows = clray::table("brdf");
+  for (int row = 0; row < static_cast<int>(rows.size()); ++row)
+    for (int k = 0; k < 8; ++k) {
+      std::vector<double> set;
+      for (const auto& key : rows[row].keys) {
+        const double share = k % 2 ? random.between(0.001, 0.999) : std::exp2(random.between(-12.0, -0.01));
+        set.push_back(key.low + share * (key.high - key.low));
+      }
+      all.push_back(brdf_test::make_model(row, set));
+    }
+  return all;
+}
+
 /// Every parameter set of `row` (all rows if negative) with directions from head-on to grazing, mirrored and back.
 BrdfInput brdf_input(int row, std::size_t pairs) {
   Random random(31);
   BrdfInput input;
-  for (const brdf_test::Model& model : brdf_test::models(false)) {
+  std::vector<brdf_test::Model> models = brdf_test::models(false);
+  for (const brdf_test::Model& model : random_models()) models.push_back(model);
+  for (const brdf_test::Model& model : models) {
     if (row >= 0 && model.material.model != static_cast<u32>(row)) continue;
     input.materials.push_back(model.material);
     for (std::size_t k = 0; k < pairs; ++k) {

@@ -219,7 +219,7 @@ TEST_CASE("the depth stays bounded for a million coincident boxes, and the time 
 
 TEST_CASE("the depth stays bounded where the surface-area heuristic peels boxes off one by one") {
   // Each box is twice as far and twice as large as the one before: bins of equal width part one box from the rest.
-  Boxes boxes;
+  Boxes boxes{box_at({-1.1, -1.1, -1.1}, {0, 0, 0})};  // opposite: the frame's middle is where they gather
   for (int i = 0; i < 120; ++i) {
     const double x = std::ldexp(1.0, -i);
     boxes.push_back(box_at({x, x, x}, {0.1 * x, 0.1 * x, 0.1 * x}));
@@ -229,6 +229,20 @@ TEST_CASE("the depth stays bounded where the surface-area heuristic peels boxes 
   // The same with a crowd at the small end.
   for (int i = 0; i < 20000; ++i) boxes.push_back(box_at({0, 0, 0}, {1e-38, 1e-38, 1e-38}));
   check_tree(boxes);
+}
+
+TEST_CASE("below depth 40 the tree halves: boxes that peel off few by few for 75 levels do not") {
+  // Along each axis in turn boxes lie at powers of 2: bins of equal width part a few from all the rest. One box
+  // opposite puts the middle of the frame, where fp32 is finest, where they gather.
+  Boxes boxes{box_at({-1, -1, -1}, {0, 0, 0})};
+  for (int axis = 0; axis < 3; ++axis)
+    for (int i = 0; i < 120; ++i) {
+      std::array<double, 3> at{{0, 0, 0}};
+      at[axis] = std::ldexp(1.0, -i);
+      boxes.push_back(box_at(at, {0, 0, 0}));
+    }
+  // A node of four takes in up to three levels of a chain: 40/3, then log2(360/4) by twos. Unbounded it is 25.
+  CHECK(check_tree(boxes).depth <= 14 + 4);
 }
 
 TEST_CASE("the stack that a walk uses in any order never exceeds what the tree says") {
@@ -278,28 +292,32 @@ TEST_CASE("same boxes, same tree; 2^40 times larger or smaller, the same nodes")
   }
 }
 
-TEST_CASE("the tree parts what is apart: far fewer leaves are near a point than boxes in all") {
-  // Guards against a tree that is correct and useless. 20,000 boxes of 1/1000 the body: a point lies in few leaves.
-  const Boxes boxes = random_boxes(20000, 1.0, 5e-4);
-  const LinearBvh tree = build_bvh(boxes);
+TEST_CASE("the tree parts what is apart, along every axis: a line opens few of the nodes") {
+  // Guards against a tree that is correct and useless. 20,000 boxes of 1/1000 the body fill 17 leaves along a side;
+  // a line that crosses them opens a few nodes for each.
+  const LinearBvh tree = build_bvh(random_boxes(20000, 1.0, 5e-4));
   std::mt19937_64 random(5);
-  std::uniform_real_distribution<float> at(-1.0f, 1.0f);
-  std::size_t opened = 0;
-  const int points = 500;
-  for (int n = 0; n < points; ++n) {
-    const float x[3] = {at(random), at(random), at(random)};
-    std::vector<std::uint32_t> stack{0};
-    while (!stack.empty()) {
-      const ClrayNode& node = tree.nodes[stack.back() >> 4];
-      stack.pop_back();
-      ++opened;
-      for (int k = 0; k < 4; ++k) {
-        bool in = node.child[k] != CLRAY_NO_CHILD && !is_leaf(node.child[k]);
-        for (int axis = 0; axis < 3; ++axis)
-          in = in && x[axis] >= node.bounds[2 * axis][k] && x[axis] <= node.bounds[2 * axis + 1][k];
-        if (in) stack.push_back(node.child[k]);
+  std::uniform_real_distribution<float> at(-0.9f, 0.9f);
+  for (int along = 0; along < 3; ++along) {
+    std::size_t opened = 0;
+    const int lines = 200;
+    for (int n = 0; n < lines; ++n) {
+      const float x[3] = {at(random), at(random), at(random)};
+      std::vector<std::uint32_t> stack{0};
+      while (!stack.empty()) {
+        const ClrayNode& node = tree.nodes[stack.back() >> 4];
+        stack.pop_back();
+        ++opened;
+        for (int k = 0; k < 4; ++k) {
+          bool in = node.child[k] != CLRAY_NO_CHILD && !is_leaf(node.child[k]);
+          for (int axis = 0; axis < 3; ++axis)
+            in = in &&
+                 (axis == along || (x[axis] >= node.bounds[2 * axis][k] && x[axis] <= node.bounds[2 * axis + 1][k]));
+          if (in) stack.push_back(node.child[k]);
+        }
       }
     }
+    MESSAGE("nodes a line: " << static_cast<double>(opened) / lines << " of " << tree.nodes.size());
+    CHECK(opened < tree.nodes.size() / 20 * lines);
   }
-  CHECK(opened < 30u * points);  // log4(20000/4) = 6.1 levels, a few siblings each
 }
