@@ -8,6 +8,7 @@ import subprocess
 import sys
 
 from paper_data import rows_of
+from paper_edges import visible_edges
 
 FIGURE1_SET = "medium-specular-dull"
 SESSION_SETS = ("low-diffuse-dull", "low-specular-dull", "medium-diffuse-dull", "medium-specular-dull")
@@ -89,7 +90,7 @@ def pictures(out, figure, shots, crop, columns):
     total = (columns * width, rows * (height + title))
     script = terminal(f"{out}/figure{figure}.png", *total, ground)
     script += "unset border\nunset tics\nunset key\nset multiplot\n"
-    for i, (path, degrees, size) in enumerate(shots):
+    for i, (path, degrees, size, mesh, view) in enumerate(shots):
         left, bottom = i % columns * width / total[0], 1 - (i // columns + 1) * (height + title) / total[1]
         x0, y0 = (size[0] - width) / 2 - 0.5, (size[1] - height) / 2 - 0.5
         script += (
@@ -98,8 +99,15 @@ def pictures(out, figure, shots, crop, columns):
             f"unset label\nset label '{degrees}°' at screen {left + 0.5 * width / total[0]:.6f},"
             f"{bottom + (height + 0.5 * title) / total[1]:.6f} center textcolor rgb '#e5e7eb' font ',17'\n"
             f"set xrange [{x0}:{x0 + width}]\nset yrange [{y0}:{y0 + height}]\n"
-            f"plot {quoted(path)} binary filetype=png with rgbalpha\n"
         )
+        middle, scale = ((size[0] - 1) / 2, (size[1] - 1) / 2), 1.0 / view["pixel_m"]
+        lines = [
+            "\n".join(" ".join(f"{middle[i] + scale * end[i]:.2f}" for i in (0, 1)) for end in piece)
+            for piece in visible_edges(mesh, view)
+        ]
+        script += f"$edges{i} << EOD\n" + "\n\n".join(lines) + "\nEOD\n"
+        script += f"plot {quoted(path)} binary filetype=png with rgbalpha, $edges{i} with lines linewidth 1.1 "
+        script += "linecolor rgb '#55d5ffd5'\n"
     gnuplot(script + "unset multiplot\n")
 
 

@@ -22,6 +22,10 @@ def table(header, rows):
     return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows]) + "\n"
 
 
+def signed(percent):
+    return f"{percent:+.2f}".replace("-0.00", "0.00").replace("+0.00", "0.00")
+
+
 def diffuse_photons(body, name, area_m2, cosine):
     """Photons of the diffuse term alone from a plate in full view: (R_d of PHYSICS 2) * area * cosine^2."""
     level, lobe, _ = name.split("-")
@@ -113,7 +117,7 @@ def dull_against_sharp(bodies):
                 dull, sharp = (f"{level}-{lobe}-{width}" for width in WIDTHS)
                 difference = [100 * (s / d - 1) for s, d in zip(body.photons[sharp], body.photons[dull])]
                 mean = 100 * (body.mean_photons(sharp) / body.mean_photons(dull) - 1)
-                cells.append(f"{mean:+.2f} % ({min(difference):+.2f} … {max(difference):+.2f} %)")
+                cells.append(f"{signed(mean)} % ({signed(min(difference))} … {signed(max(difference))} %)")
             rows.append([f"{level}, {lobe}", *cells])
     return table(["ρ, d", *(TITLES[name] for name in BODIES)], rows)
 

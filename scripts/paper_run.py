@@ -15,7 +15,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import paper_figures  # noqa: E402
 import paper_numbers  # noqa: E402
 import paper_scenes  # noqa: E402
-from paper_data import Body  # noqa: E402
+from paper_data import Body, read_summary  # noqa: E402
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 PARTS_RAYS = 1 << 22  # figure 1 shows single bins of faint wings
@@ -77,7 +77,10 @@ def main():
     for figure, (name, step, count, size, exposure, lambert) in PICTURES.items():
         scene = paper_scenes.picture_scene(meshes, scenes, name, step, count, size, exposure, lambert)
         folder = runner.clray(scene, f"{name}_picture", [])
-        pictures[figure] = [(f"{folder}/rgb-{i:04d}.png", step * i, size) for i in range(count)]
+        views = read_summary(folder)["detectors"]["rgb"]["orientations"]
+        pictures[figure] = [
+            (f"{folder}/rgb-{i:04d}.png", step * i, size, f"{meshes}/{name}.obj", views[i]) for i in range(count)
+        ]
     runner.say("drawing")
     paper_figures.draw_all(options.out, bodies, parts, pictures)
     runner.say("working out the numbers")
