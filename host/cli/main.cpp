@@ -4,6 +4,7 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstdio>
@@ -91,7 +92,10 @@ std::string output_folder(const cli::Arguments& arguments, const Scene& scene) {
 }
 
 void say_what_was_missed(const Result& result, const Scene& scene) {
-  if (result.target_asked && !result.target_reached) {
+  const bool said = std::any_of(result.warnings.begin(), result.warnings.end(), [](const std::string& warning) {
+    return warning.find("target error was not reached") != std::string::npos;
+  });
+  if (result.target_asked && !result.target_reached && !said) {
     std::fprintf(stderr, "clray: warning: the target of %g %% was not reached%s\n", scene.trace.target_error_percent,
                  result.partial ? " in the time given" : "");
   }
