@@ -191,17 +191,28 @@ bool PassRunner::run_block(std::uint32_t first_point, std::uint32_t points,
   return go;
 }
 
+namespace {
+
+/// Adds a buffer of the device, times `unit`, in blocks: memory of that size is reused, not mapped anew.
+void add_to(std::vector<Sum>* values, OpenedDevice& opened, const cl::Buffer& buffer, std::int64_t unit) {
+  constexpr std::size_t kBlock = 1u << 18;
+  for (std::size_t first = 0; first < values->size(); first += kBlock) {
+    const auto block = read_buffer<std::int64_t>(opened, buffer, std::min(kBlock, values->size() - first), first);
+    for (std::size_t k = 0; k < block.size(); ++k) (*values)[first + k] += static_cast<Sum>(block[k]) * unit;
+  }
+}
+
+}  // namespace
+
 void PassRunner::drain(Sums* sums) {
   sums->values.resize(plan_.sums_size, 0);
   sums->hits.resize(plan_.hits_size, 0);
   for (auto& device : devices_) {
     OpenedDevice& opened = device->opened;
-    const auto values = read_buffer<std::int64_t>(opened, device->sums, plan_.sums_size);
-    for (std::size_t k = 0; k < values.size(); ++k) sums->values[k] += values[k];
+    add_to(&sums->values, opened, device->sums, 1);
     zero_buffer<std::int64_t>(opened, device->sums, plan_.sums_size);
     if (device->has_wide) {
-      const auto wide = read_buffer<std::int64_t>(opened, device->wide, plan_.sums_size);
-      for (std::size_t k = 0; k < wide.size(); ++k) sums->values[k] += static_cast<Sum>(wide[k]) * 4294967296;
+      add_to(&sums->values, opened, device->wide, 4294967296);
       zero_buffer<std::int64_t>(opened, device->wide, plan_.sums_size);
     }
     const auto hits = read_buffer<std::uint32_t>(opened, device->hits, plan_.hits_size);
