@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <tuple>
 
 #include "clray/error.hpp"
 #include "pipeline/convexity.hpp"
@@ -48,6 +49,13 @@ Point to_body(const Transform& transform, const std::array<double, 9>& rotation,
   if (transform.angle_rad != 0.0) x = rotated(rotation, x);
   // Adding zero turns -0 into +0, so that equal points have equal bits.
   return {{x[0] + transform.translate.x + 0.0, x[1] + transform.translate.y + 0.0, x[2] + transform.translate.z + 0.0}};
+}
+
+/// A material's spectra as numbers and names that can be compared.
+std::vector<std::tuple<std::string, std::vector<double>, std::vector<double>>> spectra_of(const Material& material) {
+  std::vector<std::tuple<std::string, std::vector<double>, std::vector<double>>> all;
+  for (const auto& [key, spectrum] : material.spectra) all.emplace_back(key, spectrum.wavelength_nm, spectrum.value);
+  return all;
 }
 
 class Packer {
@@ -196,7 +204,9 @@ class Packer {
       const Material &a = scene_.materials[x], &b = scene_.materials[y];
       if (a.model != b.model) return a.model < b.model;
       if (a.two_sided != b.two_sided) return a.two_sided;
-      return a.parameters < b.parameters;
+      if (a.parameters != b.parameters) return a.parameters < b.parameters;
+      if (a.infrared_reflectance != b.infrared_reflectance) return a.infrared_reflectance < b.infrared_reflectance;
+      return spectra_of(a) < spectra_of(b);
     });
     for (std::uint32_t k = 0; k < order.size(); ++k) rank[order[k]] = k;
     return rank;
@@ -296,6 +306,7 @@ class Packer {
     }
     for (int k = 0; k < 3; ++k) g_.centre[k] = 0.5 * all.low[k] + 0.5 * all.high[k];
     g_.radius = farthest(all, g_.centre);
+    for (int k = 0; k < 3; ++k) g_.extent = std::max(g_.extent, all.high[k] - all.low[k]);
   }
 
   static double farthest(const Box& box, const Point& from) {

@@ -46,6 +46,7 @@ struct Geometry {
   MeshReport report;
   Point centre{{0, 0, 0}};  ///< of the bounding sphere over all hinge angles
   double radius = 0.0;
+  double extent = 0.0;  ///< longest side of the box around it, over all hinge angles
 };
 
 /// Builds everything that does not depend on the view. Throws Error(input) if nothing can be hit.

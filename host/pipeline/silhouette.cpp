@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "pipeline/portable_tables.hpp"
 
@@ -47,7 +48,7 @@ class Rasteriser {
       }
       if (tests_ > kMostTests) return {};
     }
-    return sorted();
+    return slots();
   }
 
  private:
@@ -188,45 +189,50 @@ class Rasteriser {
     return -(u * v3_dot(grid_.path, grid_.u) + v * v3_dot(grid_.path, grid_.v) + w * v3_dot(grid_.path, grid_.toward));
   }
 
-  static std::uint32_t interleave(std::uint32_t x) {
-    x = (x | x << 8) & 0x00ff00ffu;
-    x = (x | x << 4) & 0x0f0f0f0fu;
-    x = (x | x << 2) & 0x33333333u;
-    return (x | x << 1) & 0x55555555u;
+  /// Place of a cell along Hilbert's curve, whose neighbours are neighbours in the grid.
+  std::uint32_t hilbert(std::uint32_t x, std::uint32_t y) const {
+    std::uint32_t place = 0;
+    for (std::uint32_t half = n_ / 2; half > 0; half /= 2) {
+      const std::uint32_t right = (x & half) != 0, top = (y & half) != 0;
+      place = place << 2 | ((3 * right) ^ top);
+      if (top == 0) {
+        if (right != 0) {
+          x = n_ - 1 - x;
+          y = n_ - 1 - y;
+        }
+        std::swap(x, y);
+      }
+    }
+    return place;
   }
 
-  std::vector<std::uint32_t> sorted() const {
+  std::vector<std::uint32_t> slots() const {
     struct Key {
       std::int64_t step;
-      std::uint32_t morton, cell;
+      std::uint32_t place, cell;
     };
     std::vector<Key> keys;
     const double step = 4.0 * geometry_.radius / kPathSteps;
     for (std::uint32_t cell = 0; cell < state_.size(); ++cell) {
       if (state_[cell] == 0) continue;
-      keys.push_back({static_cast<std::int64_t>(std::floor(path_[cell] / step)),
-                      interleave(cell % n_) | interleave(cell / n_) << 1, cell});
+      keys.push_back({static_cast<std::int64_t>(std::floor(path_[cell] / step)), hilbert(cell % n_, cell / n_), cell});
     }
+    std::map<std::int64_t, double> cells_of;
+    for (const Key& key : keys) cells_of[key.step] += 1.0;
     std::sort(keys.begin(), keys.end(),
-              [](const Key& a, const Key& b) { return a.step != b.step ? a.step < b.step : a.morton < b.morton; });
+              [](const Key& a, const Key& b) { return a.step != b.step ? a.step < b.step : a.place < b.place; });
     // Half of the slots go to all cells alike, half to all steps of path alike: rare delays get their share of rays.
-    std::vector<std::uint32_t> slots;
-    std::size_t steps = 0;
-    for (std::size_t k = 0; k < keys.size(); ++k) steps += k == 0 || keys[k].step != keys[k - 1].step;
-    for (std::size_t first = 0; first < keys.size();) {
-      std::size_t last = first;
-      while (last < keys.size() && keys[last].step == keys[first].step) ++last;
-      const double share =
-          static_cast<double>(keys.size()) / (static_cast<double>(steps) * static_cast<double>(last - first));
+    const double mean = static_cast<double>(keys.size()) / static_cast<double>(cells_of.size());
+    std::vector<std::uint32_t> out;
+    for (const Key& key : keys) {
+      const double share = mean / cells_of[key.step];
       const auto count = static_cast<std::uint32_t>(std::min(1.0 + std::floor(share), kMostSlots));
-      for (; first < last; ++first) {
-        for (std::uint32_t k = 0; k < count; ++k) {
-          slots.push_back(keys[first].cell);
-          slots.push_back(k << 16 | count);
-        }
+      for (std::uint32_t k = 0; k < count; ++k) {
+        out.push_back(key.cell);
+        out.push_back(k << 16 | count);
       }
     }
-    return slots;
+    return out;
   }
 
   const Geometry& geometry_;

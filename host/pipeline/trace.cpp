@@ -74,7 +74,7 @@ class PassDriver {
     } else if (options_.rays != 0) {
       samples = static_cast<double>(options_.rays) / pixels;
     } else if (options_.target_error_percent > 0.0) {
-      samples = 1024.0;
+      samples = 64.0;  // where a picture's search for a target gives up; `samples` or --rays go on
     }
     return power_of_two_above(static_cast<std::uint64_t>(std::max(1.0, std::ceil(samples / plan_.replicates))));
   }
@@ -165,7 +165,10 @@ class PassDriver {
       throw Error(ErrorCode::usage, fmt::format("at most {} rays per orientation can be traced with {} replicates",
                                                 kMostPoints * plan_.replicates, plan_.replicates));
     target_ = options_.target_error_percent / 100.0;
-    const std::uint64_t first = plan_.pixels ? 1 : kFirstPoints;
+    // Large cubes take longer to read than to trace: with no target to meet, three doublings tell the error's course.
+    const std::uint64_t first = !plan_.pixels   ? kFirstPoints
+                                : target_ > 0.0 ? 1
+                                                : std::max<std::uint64_t>(1, points / 4);
     for (std::uint64_t n = std::min(points, first); n <= points; n *= 2) {
       if (!advance("trace", &out_.sums, n, 0)) {
         out_.partial = true;
@@ -306,7 +309,7 @@ Result trace(const Scene& scene, Device& device, const TraceHooks& hooks) {
   result.replicates = scene.trace.replicates;
   const Geometry geometry = build_geometry(scene);
   result.mesh = geometry.report;
-  result.extent_m = 2.0 * geometry.radius;
+  result.extent_m = geometry.extent;
   const std::vector<PassPlan> plans = plan_passes(scene, geometry);
   result.seconds.bvh = now() - start;
   result.digest = kFnvStart;

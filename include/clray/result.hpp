@@ -134,7 +134,7 @@ struct Result {
   std::uint64_t digest = 0;  ///< of all integer sums: equal digests mean equal results
   bool partial = false;      ///< ended early by a signal or the time limit
   bool target_asked = false, target_reached = false;
-  double extent_m = 0.0;  ///< diameter of the bounding sphere
+  double extent_m = 0.0;  ///< longest side of the box around the body, axes of the body frame
   MeshReport mesh;        ///< all meshes together
   Seconds seconds;
   Diagnostics diagnostics;

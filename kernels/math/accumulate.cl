@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Adding without an order: numbers become 64-bit integers q = rte(w·2^S), so sums have the same bits whatever the
 // order of work. NaN and infinity are sorted out before the conversion (devices differ there); a number too large
-// for the first accumulator goes whole into a second at scale S - 32; one too large for that is counted.
+// for the first accumulator goes to a second at scale S - 32, what that rounds away to the first; one too large for both
+// is counted.
 #ifndef CLRAY_ACCUMULATE_CL
 #define CLRAY_ACCUMULATE_CL
 
 #include "math/atomic64.cl"
 
+#define CLRAY_TWO_TO_32 4294967296.0
 #define CLRAY_TWO_TO_MINUS_32 2.3283064365386963e-10
 #define CLRAY_WIDE_LIMIT 274877906944.0  // 2^38: with 2^24 contributions a slice the sum stays below 2^62
 
@@ -21,7 +23,8 @@ static i64 to_fixed(f64 value, f64 scale, f64 limit, i64 *wide, volatile __globa
   const f64 scaled = value * (scale * CLRAY_TWO_TO_MINUS_32);
   if (fabs(scaled) <= CLRAY_WIDE_LIMIT) {
     *wide = convert_long_rte(scaled);
-    return 0;
+    // What the coarser scale rounds away, exactly: nothing is lost to it.
+    return convert_long_rte(fma(-(f64)*wide, CLRAY_TWO_TO_32, value * scale));
   }
 #endif
   count_event(counters, size - size == 0.0 ? CLRAY_COUNT_OVERFLOW : CLRAY_COUNT_NON_FINITE);

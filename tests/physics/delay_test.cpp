@@ -74,7 +74,7 @@ TEST_CASE("convex polyhedra, bistatic, against facets both lit and seen") {
       const clray::Vec3 s = toward(0.9, 0.5);
       clray::Scene scene = scene_of(mesh, lambert(0.6));
       bistatic(scene, s, o);
-      rays(scene, 19);
+      rays(scene, 21);
       const clray::Result result = run(scene);
       const Pulse exact = convex_lambert(*mesh, 0.6, s, o);
       check_estimate(result.delay.at(0).intensity_m2_per_sr, exact.total_m2_per_sr, 5e-4, "bistatic polyhedron");
