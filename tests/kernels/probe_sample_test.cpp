@@ -91,7 +91,8 @@ struct Fixed {
   bool overflow = false, non_finite = false;
 };
 
-/// By the definition in DESIGN, in long double: products with powers of two are exact, rintl rounds half to even.
+/// By the definition (math/accumulate.cl), in long double: products with powers of two are exact, rintl rounds half to
+/// even.
 Fixed fixed_by_definition(double value, double scale, double limit, bool wide) {
   Fixed f;
   if (std::isnan(value) || std::isinf(value)) {
@@ -101,7 +102,12 @@ Fixed fixed_by_definition(double value, double scale, double limit, bool wide) {
   } else {
     const long double q = static_cast<long double>(value) * scale / 4294967296.0L;
     f.overflow = !wide || std::fabs(q) > 274877906944.0L;
-    if (!f.overflow) f.wide = static_cast<std::int64_t>(std::rint(q));
+    if (!f.overflow) {
+      f.wide = static_cast<std::int64_t>(std::rint(q));
+      const long double rest =
+          static_cast<long double>(value) * scale - static_cast<long double>(f.wide) * 4294967296.0L;
+      f.narrow = static_cast<std::int64_t>(std::rint(rest));  // exact in the 64 bits of long double
+    }
   }
   return f;
 }
