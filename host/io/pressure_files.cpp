@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Radiation pressure's files: pressure.csv (a row per Sun direction or orientation) and pressure.png (a map over
-// azimuth and elevation where there are many directions, curves over time for a motion). Coefficients C = F c / E in
-// m², torques about the reference point in m³, body frame.
+// azimuth and elevation where there are many directions, curves over time for a motion); files for each band where
+// there are several. Coefficients C = F c / E in m², torques about the reference point in m³, body frame.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -26,9 +26,28 @@ double length(const Vec3& v) {
   return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
 }
 
+std::string title_of(const Writer& writer, const ResultKey& key) {
+  return writer.title("pressure", key) + (key.band.empty() ? "" : ", " + key.band + " nm");
+}
+
+/// Bands are not directions: each is a group of its own.
+std::vector<Group> groups_by_band(const std::vector<PressureResult>& records) {
+  std::vector<Group> found;
+  for (const auto& group : groups(records)) {
+    const std::size_t first = found.size();
+    for (const auto* record : group) {
+      auto place = found.begin() + static_cast<std::ptrdiff_t>(first);
+      while (place != found.end() && place->front()->key.band != record->key.band) ++place;
+      if (place == found.end()) place = found.insert(found.end(), Group{});
+      place->push_back(record);
+    }
+  }
+  return found;
+}
+
 void pressure_table(Writer& writer, const Group& group, const std::string& stem) {
   auto table = writer.table(
-      writer.add(stem, "csv"), "radiation force and torque of " + writer.title("pressure", group.front()->key),
+      writer.add(stem, "csv"), "radiation force and torque of " + title_of(writer, group.front()->key),
       "sun: unit vector toward the source, body frame; angles deg; C = F c / E m^2; T = torque c / E m^3 about the "
       "reference point; absorbed m^2; *_error: one standard error");
   table.comment("force in N = C * irradiance / 299792458 m/s; 1361 W/m^2 at 1 au");
@@ -103,7 +122,7 @@ void map_picture(Writer& writer, const Group& group, const std::string& stem) {
   for (const Spot& spot : spots) plot.point({spot.azimuth, spot.elevation, spot.size});
   plot.end_data();
   plot.line("set title " +
-            gnuplot_text(writer.title("pressure", group.front()->key) + ": radiation force by direction of the Sun") +
+            gnuplot_text(title_of(writer, group.front()->key) + ": radiation force by direction of the Sun") +
             " font ',18'");
   plot.line("set xlabel 'azimuth of the Sun in the body frame (°)'; set ylabel 'elevation (°)'");
   plot.line("set cblabel '|C| = |F| c / E  (m²)' offset 1,0; unset key; unset grid; set xtics 45; set ytics 30");
@@ -124,8 +143,7 @@ void time_picture(Writer& writer, const Group& group, const std::string& stem) {
     plot.point({time_of(writer.result, record->key), c.x, c.y, c.z, e.x, e.y, e.z});
   }
   plot.end_data();
-  plot.line("set title " +
-            gnuplot_text(writer.title("pressure", group.front()->key) + ": radiation force, body frame") +
+  plot.line("set title " + gnuplot_text(title_of(writer, group.front()->key) + ": radiation force, body frame") +
             " font ',18'");
   plot.line("set xlabel 'time (s)'; set ylabel 'C = F c / E  (m²)'; set autoscale xfix; set tmargin at screen 0.92");
   plot.line(
@@ -152,8 +170,9 @@ bool one_instant(const Group& group) {
 }  // namespace
 
 void write_pressure(Writer& writer) {
-  for (const auto& group : groups(writer.result.pressure)) {
-    const std::string stem = writer.stem("pressure", group.front()->key);
+  for (const auto& group : groups_by_band(writer.result.pressure)) {
+    const ResultKey& key = group.front()->key;
+    const std::string stem = writer.stem("pressure", key) + (key.band.empty() ? "" : "-" + file_name_part(key.band));
     pressure_table(writer, group, stem);
     if (!writer.options.plots || group.size() < 2) continue;
     if (writer.scene.motion && !one_instant(group)) {

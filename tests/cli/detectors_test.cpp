@@ -68,7 +68,7 @@ TEST_CASE("five detectors in one run, each with its error, every total to its ta
     CAPTURE(name);
     CHECK(result["detectors"].contains(name));
   }
-  for (const char* name : {"delay.csv", "spectrum.csv", "pressure.csv", "rgb.png", "rgb.exr", "hyperspectral.fits"}) {
+  for (const char* name : {"delay.csv", "spectrum.csv", "pressure-V.csv", "rgb.png", "rgb.exr", "hyperspectral.fits"}) {
     CAPTURE(name);
     CHECK((scratch.has(std::string("o/") + name) || contains(name, "delay")));
   }

@@ -252,3 +252,19 @@ TEST_CASE("delay.fits: orientation x bin, the same densities as the table") {
   }
   fits_close_file(file, &status);
 }
+
+TEST_CASE("radiation force in several bands: a table for each, and no map of a single direction") {
+  Scratch scratch;
+  Result result = io_test::result();
+  for (const char* band : {"400-500", "V"}) {
+    PressureResult p;
+    p.key.detector = "pressure";
+    p.key.band = band;
+    result.pressure.push_back(p);
+  }
+  write_result(result, io_test::scene("pressure"), scratch / "out");
+  CHECK(std::filesystem::exists(scratch / "out/pressure-400-500.csv"));
+  CHECK(std::filesystem::exists(scratch / "out/pressure-V.csv"));
+  CHECK_FALSE(std::filesystem::exists(scratch / "out/pressure-V.png"));
+  CHECK_FALSE(std::filesystem::exists(scratch / "out/pressure.png"));
+}
