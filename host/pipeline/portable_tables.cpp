@@ -7,7 +7,8 @@
 namespace clray {
 namespace portable {
 
-// clang-format off: models before what calls them
+// Models stand before what calls them.
+// clang-format off
 #include "brdf/brdf.h"
 #include "generated/brdf_all.inc"
 #include "brdf/dispatch.cl"
