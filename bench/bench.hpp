@@ -19,6 +19,7 @@ int error(const Options& options);       ///< error against run time (docs/error
 int stability(const Options& options);   ///< stiff and extreme cases (docs/stability.md)
 int specialise(const Options& options);  ///< generic against specialised programs
 int sweep(const Options& options);       ///< cost of orientations
+int shots(const Options& options);       ///< first-photon shots per second
 
 /// Whether `name` is asked for.
 bool wanted(const Options& options, const std::string& name);

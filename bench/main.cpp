@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// clray-bench error|stability|specialise|sweep: measures clray through its public interface. The device is the one
-// that CLRAY_TEST_DEVICE names, else the CPU.
+// clray-bench error|stability|specialise|sweep|shots: measures clray through its public interface. The device is the
+// one that CLRAY_TEST_DEVICE names, else the CPU.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
@@ -28,6 +28,7 @@ int main(int argc, char** argv) {
   add("stability", "the stiff and extreme cases", clray_bench::stability);
   add("specialise", "generic against specialised programs", clray_bench::specialise);
   add("sweep", "cost of orientations", clray_bench::sweep);
+  add("shots", "first-photon shots per second", clray_bench::shots);
   CLI11_PARSE(app, argc, argv);
   try {
     return chosen(options);

@@ -92,6 +92,14 @@ struct PassRunner::OnDevice {
                           [&] { return static_cast<double>(opened.device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>()); });
   }
 
+  /// Sets everything that is summed to zero.
+  void clear(const PassPlan& plan) {
+    zero_buffer<std::int64_t>(opened, sums, plan.sums_size);
+    if (has_wide) zero_buffer<std::int64_t>(opened, wide, plan.sums_size);
+    zero_buffer<std::uint32_t>(opened, hits, plan.hits_size);
+    zero_buffer<std::int64_t>(opened, counters, CLRAY_COUNTERS);
+  }
+
   void set_epoch(std::uint32_t epoch) {
     if (constants.epoch == epoch) return;
     constants.epoch = epoch;
@@ -129,23 +137,27 @@ bool PassRunner::run(Sums* sums, std::uint64_t points, std::uint32_t epoch,
   const std::uint64_t bounces = static_cast<std::uint64_t>(plan_.max_bounces) + 1;
   std::uint64_t block = kMostContributions / (2 * bounces);  // a bounce enters a book at most twice
   if (options_.slice_points != 0) block = std::min(block, options_.slice_points);
-  std::uint64_t undrained = 0;
-  while (sums->points < points) {
-    const std::uint64_t count = std::min(points - sums->points, block);
-    const double done = static_cast<double>(sums->points - begin), all = static_cast<double>(points - begin);
+  std::uint64_t at = begin, undrained = 0;
+  Sums before;  // a copy only where sums must be drained before the end: pictures' are large
+  while (at < points) {
+    const std::uint64_t count = std::min(points - at, block);
+    const double done = static_cast<double>(at - begin), all = static_cast<double>(points - begin);
     const auto ask = [&](double share) { return keep_going((done + share * static_cast<double>(count)) / all); };
     if ((undrained + count) * 2 * bounces > kMostContributions) {
+      if (before.values.empty()) before = *sums;
       drain(sums);
       undrained = 0;
     }
-    if (!run_block(static_cast<std::uint32_t>(sums->points), static_cast<std::uint32_t>(count), ask)) {
-      drain(sums);  // leaves the device's sums at zero
+    if (!run_block(static_cast<std::uint32_t>(at), static_cast<std::uint32_t>(count), ask)) {
+      if (!before.values.empty()) *sums = std::move(before);
+      for (auto& device : devices_) device->clear(plan_);
       return false;
     }
-    sums->points += count;
+    at += count;
     undrained += count;
   }
   drain(sums);
+  sums->points = points;
   return true;
 }
 
@@ -210,11 +222,7 @@ void PassRunner::drain(Sums* sums) {
   for (auto& device : devices_) {
     OpenedDevice& opened = device->opened;
     add_to(&sums->values, opened, device->sums, 1);
-    zero_buffer<std::int64_t>(opened, device->sums, plan_.sums_size);
-    if (device->has_wide) {
-      add_to(&sums->values, opened, device->wide, 4294967296);
-      zero_buffer<std::int64_t>(opened, device->wide, plan_.sums_size);
-    }
+    if (device->has_wide) add_to(&sums->values, opened, device->wide, 4294967296);
     const auto hits = read_buffer<std::uint32_t>(opened, device->hits, plan_.hits_size);
     std::size_t k = 0;
     if (plan_.pixels) {
@@ -230,10 +238,9 @@ void PassRunner::drain(Sums* sums) {
         for (std::size_t b = 1; b < row; ++b) sums->hits[at + b] += hits[at + b];
       }
     }
-    zero_buffer<std::uint32_t>(opened, device->hits, plan_.hits_size);
     const auto counters = read_buffer<std::int64_t>(opened, device->counters, CLRAY_COUNTERS);
     for (std::size_t c = 0; c < CLRAY_COUNTERS; ++c) sums->counters[c] += static_cast<std::uint64_t>(counters[c]);
-    zero_buffer<std::int64_t>(opened, device->counters, CLRAY_COUNTERS);
+    device->clear(plan_);
   }
 }
 

@@ -31,7 +31,7 @@ class PassRunner {
   ~PassRunner();
 
   /// Adds points [sums->points, points) of epoch `epoch` to *sums. `keep_going` is asked between launches with the
-  /// share done; when it says no, returns false, and *sums is to be thrown away.
+  /// share done; when it says no, returns false and *sums is as it was.
   bool run(Sums* sums, std::uint64_t points, std::uint32_t epoch, const std::function<bool(double)>& keep_going);
 
   /// Seconds spent building programs.

@@ -117,12 +117,9 @@ class PassDriver {
 
   /// Doubles *sums up to `points`; false when cut short, with *sums at the last doubling complete.
   bool advance(const char* phase, Sums* sums, std::uint64_t points, std::uint32_t epoch) {
-    Sums next = *sums;
     const std::uint64_t from = sums->points;
-    const bool done =
-        runner_.run(&next, points, epoch, [&](double share) { return keep_going(phase, share, from, points); });
-    if (!done) return false;
-    *sums = std::move(next);
+    const auto ask = [&](double share) { return keep_going(phase, share, from, points); };
+    if (!runner_.run(sums, points, epoch, ask)) return false;
     note(phase, *sums);
     return true;
   }
