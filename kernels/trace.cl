@@ -52,6 +52,7 @@ __kernel void clray_trace(const __global ClrayPass *pass, const __global ClrayVi
   tally.view = (u32)item;
   tally_clear(&tally);
   Sampler sampler = {pass->key0, pass->key1, pass->epoch, tally.replicate, tally.stream, 0u};
+  sampler_begin(&sampler);
   const u32 end = min(begin + chunk, points);
   for (u32 k = begin; k < end; ++k) {
     sampler.index = first_point + k;

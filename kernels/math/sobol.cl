@@ -18,6 +18,9 @@ typedef struct Sampler {
   u32 replicate;
   u32 stream;  // 0 for a beam, 1 + pixel for pixels
   u32 index;
+  u32 words[4];  // of group 0, which all points of a Sobol stream share
+  u32 sixteen;   // index/16 that `base` is for
+  u32 base[2];   // dimensions 0 and 1 of the first point of those sixteen
 } Sampler;
 
 /// Four seeds (or random words) of dimensions 4·group-2 … 4·group+1.
@@ -71,6 +74,28 @@ static void sampler_draw(const Sampler *s, const __global u32 *directions, u32 g
 #endif
   sampler_words(s, group, s->index, words);
   for (u32 k = 0; k < count; ++k) out[k] = unit_from_bits(words[skip + k]);
+}
+
+/// Before a sampler's first point.
+static void sampler_begin(Sampler *s) {
+  s->sixteen = 0xffffffffu;
+  sampler_words(s, 0u, 0xffffffffu, s->words);
+}
+
+/// Dimensions 0 and 1 of the current point: as sampler_draw, with what neighbouring points share kept.
+static void sampler_draw_first(Sampler *s, const __global u32 *directions, f64 *out) {
+#if CLRAY_SOBOL
+  if (s->sixteen != s->index >> 4) {
+    s->sixteen = s->index >> 4;
+    for (u32 k = 0; k < 2u; ++k) s->base[k] = sobol_reversed(directions, k, s->index & ~15u);
+  }
+  for (u32 k = 0; k < 2u; ++k) {
+    const u32 x = s->base[k] ^ sobol_reversed(directions, k, s->index & 15u);
+    out[k] = unit_from_bits(scramble_reversed(x, s->words[2u + k]));
+  }
+#else
+  sampler_draw(s, directions, 0u, 2u, 2u, out);
+#endif
 }
 
 #endif

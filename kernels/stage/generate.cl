@@ -4,10 +4,10 @@
 #ifndef CLRAY_GENERATE_CL
 #define CLRAY_GENERATE_CL
 
-static Ray stage_generate(const Buffers *g, const Sampler *sampler, const Tally *tally, Path *path) {
+static Ray stage_generate(const Buffers *g, Sampler *sampler, const Tally *tally, Path *path) {
   const __global ClrayView *view = g->views + tally->view;
   f64 u[2];
-  sampler_draw(sampler, g->directions, 0u, 2u, 2u, u);
+  sampler_draw_first(sampler, g->directions, u);
 #if CLRAY_PIXELS
   const u32 pixel = tally->stream - 1u;
   const u32 width = g->pass->width;

@@ -60,7 +60,7 @@ static void path_escape(const Buffers *g, Tally *tally, const Path *path, const 
 #endif
 }
 
-static void trace_path(const Buffers *g, const Sampler *sampler, Tally *tally) {
+static void trace_path(const Buffers *g, Sampler *sampler, Tally *tally) {
   Path path;
   Surface surface;
   Ray ray = stage_generate(g, sampler, tally, &path);
