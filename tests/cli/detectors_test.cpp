@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -72,6 +73,9 @@ TEST_CASE("five detectors in one run, each with its error, every total to its ta
     CAPTURE(name);
     CHECK((scratch.has(std::string("o/") + name) || contains(name, "delay")));
   }
+  // NASA's checker of the FITS standard: no error, no warning.
+  const std::string cube = scratch / "o/hyperspectral.fits";
+  CHECK(std::system(("fitsverify -q '" + cube + "' | grep -q '^verification OK'").c_str()) == 0);
   // Totals of delay and spectrometer in two bands, and |C|: five at least; 2.131 is Student's t for 15.
   CHECK(result["totals"].size() >= 5);
   for (const Json& total : result["totals"])
