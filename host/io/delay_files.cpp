@@ -305,21 +305,6 @@ void map_picture(Writer& writer, const Group& group, const std::string& stem) {
   writer.draw(plot, name);
 }
 
-/// Histograms of several bands are not orientations of one another: each band is a group of its own.
-std::vector<Group> groups_by_band(const std::vector<DelayResult>& records) {
-  std::vector<Group> found;
-  for (const auto& group : groups(records)) {
-    const std::size_t first = found.size();
-    for (const auto* record : group) {
-      auto place = found.begin() + static_cast<std::ptrdiff_t>(first);
-      while (place != found.end() && place->front()->key.band != record->key.band) ++place;
-      if (place == found.end()) place = found.insert(place, Group{});
-      place->push_back(record);
-    }
-  }
-  return found;
-}
-
 }  // namespace
 
 void write_delay(Writer& writer) {

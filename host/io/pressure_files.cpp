@@ -30,21 +30,6 @@ std::string title_of(const Writer& writer, const ResultKey& key) {
   return writer.title("pressure", key) + (key.band.empty() ? "" : ", " + key.band + " nm");
 }
 
-/// Bands are not directions: each is a group of its own.
-std::vector<Group> groups_by_band(const std::vector<PressureResult>& records) {
-  std::vector<Group> found;
-  for (const auto& group : groups(records)) {
-    const std::size_t first = found.size();
-    for (const auto* record : group) {
-      auto place = found.begin() + static_cast<std::ptrdiff_t>(first);
-      while (place != found.end() && place->front()->key.band != record->key.band) ++place;
-      if (place == found.end()) place = found.insert(found.end(), Group{});
-      place->push_back(record);
-    }
-  }
-  return found;
-}
-
 void pressure_table(Writer& writer, const Group& group, const std::string& stem) {
   auto table = writer.table(
       writer.add(stem, "csv"), "radiation force and torque of " + title_of(writer, group.front()->key),

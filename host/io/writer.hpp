@@ -62,6 +62,22 @@ std::vector<std::vector<const Record*>> groups(const std::vector<Record>& record
   return found;
 }
 
+/// The same, each band a group of its own: bands are neither orientations nor directions of one another.
+template <class Record>
+std::vector<std::vector<const Record*>> groups_by_band(const std::vector<Record>& records) {
+  std::vector<std::vector<const Record*>> found;
+  for (const auto& group : groups(records)) {
+    const std::size_t first = found.size();
+    for (const auto* record : group) {
+      auto place = found.begin() + static_cast<std::ptrdiff_t>(first);
+      while (place != found.end() && place->front()->key.band != record->key.band) ++place;
+      if (place == found.end()) place = found.emplace(place);
+      place->push_back(record);
+    }
+  }
+  return found;
+}
+
 /// A factor that brings `seconds` to a readable unit, and the unit's name.
 struct TimeUnit {
   double per_second;

@@ -99,8 +99,8 @@ double range_m(const Scene& scene, std::size_t observer, double time_s) {
 
 class Writer {
  public:
-  Writer(const Scene& scene, const Geometry& geometry, const PassPlan& plan, const PassOutcome& outcome, Result* out)
-      : scene_(scene), geometry_(geometry), plan_(plan), outcome_(outcome), read_(plan, outcome.sums), out_(*out) {}
+  Writer(const Scene& scene, const PassPlan& plan, const PassOutcome& outcome, Result* out)
+      : scene_(scene), plan_(plan), outcome_(outcome), read_(plan, outcome.sums), out_(*out) {}
 
   void write() {
     first_orientation_ = plan_.grid ? out_.orientations.size() : 0;
@@ -283,7 +283,6 @@ class Writer {
   }
 
   const Scene& scene_;
-  const Geometry& geometry_;
   const PassPlan& plan_;
   const PassOutcome& outcome_;
   SumReader read_;
@@ -293,9 +292,8 @@ class Writer {
 
 }  // namespace
 
-void add_results(const Scene& scene, const Geometry& geometry, const PassPlan& plan, const PassOutcome& outcome,
-                 Result* result) {
-  Writer(scene, geometry, plan, outcome, result).write();
+void add_results(const Scene& scene, const PassPlan& plan, const PassOutcome& outcome, Result* result) {
+  Writer(scene, plan, outcome, result).write();
 }
 
 }  // namespace clray

@@ -29,8 +29,7 @@ std::vector<Target> targets_of(const PassPlan& plan, const Geometry& geometry, c
 void largest_error(const std::vector<Target>& targets, double* relative_error, double* first_total);
 
 /// Appends what the pass found to the result's detectors, energy books and diagnostics.
-void add_results(const Scene& scene, const Geometry& geometry, const PassPlan& plan, const PassOutcome& outcome,
-                 Result* result);
+void add_results(const Scene& scene, const PassPlan& plan, const PassOutcome& outcome, Result* result);
 
 /// Digest of a pass's sums, continued from `state`.
 std::uint64_t digest_of(std::uint64_t state, const PassPlan& plan, const Sums& sums);

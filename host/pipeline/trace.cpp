@@ -335,7 +335,7 @@ Result trace(const Scene& scene, Device& device, const TraceHooks& hooks) {
     result.errors.insert(result.errors.end(), outcome.errors.begin(), outcome.errors.end());
     add_unique(plan.kept, &result.kept);
     add_unique(plan.left_out, &result.left_out);
-    add_results(scene, geometry, plan, outcome, &result);
+    add_results(scene, plan, outcome, &result);
   }
   result.target_reached = result.target_asked && target_reached && !result.partial;
   result.seconds.trace = spent;
