@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
@@ -54,8 +55,16 @@ bool gnuplot(const std::string& script) {
 }
 
 std::string device_line() {
-  const clray::DeviceInfo& d = clray_test::device().info();
+  return device_line(clray_test::device().info());
+}
+
+std::string device_line(const clray::DeviceInfo& d) {
   return fmt::format("{} ({}, {} compute units, {})", d.name, d.platform, d.compute_units, d.driver);
+}
+
+std::string test_device_choice() {
+  const char* name = std::getenv("CLRAY_TEST_DEVICE");
+  return name ? name : "cpu";
 }
 
 double median(std::vector<double> values) {

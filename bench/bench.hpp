@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "clray/device.hpp"
+
 namespace clray_bench {
 
 struct Options {
@@ -12,7 +14,10 @@ struct Options {
   bool quick = false;  ///< --short: a few minutes less, for scripts
   int seeds = 20;
   int min_log2_rays = 8, max_log2_rays = 24;
-  std::vector<std::string> only;  ///< names that a case must contain one of; empty: all
+  double max_seconds_per_case = 0.0;  ///< of tracing, by a pilot run; 0: no limit
+  std::vector<std::string> devices;   ///< as for --device of clray; empty: the tests' device
+  std::string runs;                   ///< file for a row per run, seed and ray count; empty: none
+  std::vector<std::string> only;      ///< names that a case must contain one of; empty: all
 };
 
 int error(const Options& options);       ///< error against run time (docs/error.md)
@@ -35,6 +40,10 @@ bool gnuplot(const std::string& script);
 
 /// "device, driver" of what the benchmarks ran on.
 std::string device_line();
+std::string device_line(const clray::DeviceInfo& device);
+
+/// What CLRAY_TEST_DEVICE says, else "cpu".
+std::string test_device_choice();
 
 double median(std::vector<double> values);
 /// The value below which `share` of the values lie (nearest rank).

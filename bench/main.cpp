@@ -17,7 +17,7 @@ int main(int argc, char** argv) {
     CLI::App* sub = app.add_subcommand(name, what);
     sub->add_option("--out", options.out, "folder for tables and pictures")->capture_default_str();
     sub->add_option("--only", options.only, "cases whose name contains one of these");
-    sub->add_flag("--short", options.quick, "the quick cases and few rays only");
+    sub->add_flag("--short", options.quick, "the quick cases, few seeds and few rays only");
     sub->callback([&chosen, run] { chosen = run; });
     return sub;
   };
@@ -25,6 +25,11 @@ int main(int argc, char** argv) {
   error->add_option("--seeds", options.seeds, "seeds per point")->capture_default_str()->check(CLI::Range(2, 1000));
   error->add_option("--min-log2-rays", options.min_log2_rays)->capture_default_str()->check(CLI::Range(8, 32));
   error->add_option("--max-log2-rays", options.max_log2_rays)->capture_default_str()->check(CLI::Range(8, 32));
+  error->add_option("--max-seconds-per-case", options.max_seconds_per_case,
+                    "stop a case at fewer rays where all its seeds and samplers would trace longer (default: none)");
+  error->add_option("--device", options.devices,
+                    "as for clray; repeatable (default: that of CLRAY_TEST_DEVICE, else cpu)");
+  error->add_option("--runs", options.runs, "also write a row per seed and ray count to this file");
   add("stability", "the stiff and extreme cases", clray_bench::stability);
   add("specialise", "generic against specialised programs", clray_bench::specialise);
   add("sweep", "cost of orientations", clray_bench::sweep);

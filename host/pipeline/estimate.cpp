@@ -3,6 +3,7 @@
 // elementary functions only: the same bits on every host.
 #include "pipeline/estimate.hpp"
 
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -33,15 +34,25 @@ double student_probability(double t, int freedom) {
   return 2.0 * CLRAY_INV_PI * (theta + s * sum);
 }
 
-}  // namespace
-
-double student_t95(int freedom) {
+double solve_student_t95(int freedom) {
   double low = 0.0, high = 16.0;
   for (int k = 0; k < 60; ++k) {
     const double middle = 0.5 * (low + high);
     (student_probability(middle, freedom) < 0.95 ? low : high) = middle;
   }
   return 0.5 * (low + high);
+}
+
+}  // namespace
+
+double student_t95(int freedom) {
+  // Every estimate of every bin asks, always for one of the few counts of replicates that a run may have.
+  static const std::array<double, 64> table = [] {
+    std::array<double, 64> t{};
+    for (int n = 1; n < 64; ++n) t[static_cast<std::size_t>(n)] = solve_student_t95(n);
+    return t;
+  }();
+  return freedom < 64 ? table[static_cast<std::size_t>(freedom)] : solve_student_t95(freedom);
 }
 
 Estimate estimate_mean(const std::vector<double>& replicates) {

@@ -25,8 +25,8 @@ struct Target {
 /// Every total of a pass, in result units.
 std::vector<Target> targets_of(const PassPlan& plan, const Geometry& geometry, const Sums& sums);
 
-/// Largest relative standard error over the targets (NaN if all are zero), and the first target's value.
-void largest_error(const std::vector<Target>& targets, double* relative_error, double* first_total);
+/// Largest relative standard error over the targets (NaN if all are zero), and the first target's value and error.
+void largest_error(const std::vector<Target>& targets, ErrorPoint* point);
 
 /// Appends what the pass found to the result's detectors, energy books and diagnostics.
 void add_results(const Scene& scene, const PassPlan& plan, const PassOutcome& outcome, Result* result);

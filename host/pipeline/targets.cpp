@@ -47,21 +47,39 @@ std::vector<Target> targets_of(const PassPlan& plan, const Geometry& geometry, c
   return targets;
 }
 
-void largest_error(const std::vector<Target>& targets, double* relative_error, double* first_total) {
-  *relative_error = *first_total = kNan;
+namespace {
+
+/// Of the length of a mean vector: the error along it. Across it the length changes in second order only.
+double error_of_length(const Target& target, const std::vector<double>& means, double length) {
+  std::vector<double> along(target.components.front().size());
+  for (std::size_t r = 0; r < along.size(); ++r) {
+    for (std::size_t k = 0; k < means.size(); ++k) along[r] += target.components[k][r] * (means[k] / length);
+  }
+  return estimate_mean(along).standard_error;
+}
+
+}  // namespace
+
+void largest_error(const std::vector<Target>& targets, ErrorPoint* point) {
+  point->relative_standard_error = point->first_total = point->first_standard_error = kNan;
   for (std::size_t t = 0; t < targets.size(); ++t) {
     double value = 0.0, error = 0.0;
+    std::vector<double> means;
     for (const auto& axis : targets[t].components) {
       const Estimate e = estimate_mean(axis);
+      means.push_back(e.value);
       value += e.value * e.value;
       error += e.standard_error * e.standard_error;
     }
     value = std::sqrt(value);
-    if (t == 0) *first_total = value;
+    if (t == 0) {
+      point->first_total = value;
+      point->first_standard_error = value > 0.0 ? error_of_length(targets[t], means, value) : std::sqrt(error);
+    }
     const double scale = targets[t].scale > 0.0 ? targets[t].scale : value;
     if (!(scale > 0.0)) continue;
     const double relative = std::sqrt(error) / scale;
-    if (!(*relative_error >= relative)) *relative_error = relative;
+    if (!(point->relative_standard_error >= relative)) point->relative_standard_error = relative;
   }
 }
 

@@ -132,7 +132,7 @@ class PassDriver {
     if (plan_.pixels) {
       point.relative_standard_error = picture_error(sums);
     } else {
-      largest_error(targets_of(plan_, geometry_, sums), &point.relative_standard_error, &point.first_total);
+      largest_error(targets_of(plan_, geometry_, sums), &point);
     }
     last_error_ = point.relative_standard_error;
     out_.errors.push_back(point);

@@ -112,6 +112,7 @@ struct ErrorPoint {
   double first_total =
       std::numeric_limits<double>::quiet_NaN();  ///< the first total of the result, in its unit:
                                                  ///< of delay, else spectrometer, else |C| of pressure; NaN if not kept
+  double first_standard_error = std::numeric_limits<double>::quiet_NaN();  ///< of first_total; of |C|, along C
 };
 
 /// Failures, counted and never hidden; all are zero in a sound run.

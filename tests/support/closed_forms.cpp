@@ -51,7 +51,10 @@ Cdf two_way(const std::function<double(double)>& share_of_depth) {
   return [share_of_depth](double t) { return share_of_depth(0.5 * kLightSpeed * t); };
 }
 
-Pulse convex_lambert(const clray::Mesh& mesh, double rho, Vec3 s, Vec3 o) {
+namespace {
+
+/// Sum over the facets that s and o are in front of; `intensity` is A per m² of facet, of the two cosines.
+Pulse sum_of_facets(const clray::Mesh& mesh, Vec3 s, Vec3 o, const std::function<double(double, double)>& intensity) {
   std::vector<Facet> facets;
   Pulse pulse;
   for (const auto& t : mesh.triangles) {
@@ -60,7 +63,7 @@ Pulse convex_lambert(const clray::Mesh& mesh, double rho, Vec3 s, Vec3 o) {
     const double twice_area = std::sqrt(dot(n, n));
     const double mu_i = dot(n, s) / twice_area, mu_o = dot(n, o) / twice_area;
     if (!(mu_i > 0.0) || !(mu_o > 0.0)) continue;
-    Facet f{rho / kPi * 0.5 * twice_area * mu_i * mu_o, {}};
+    Facet f{0.5 * twice_area * intensity(mu_i, mu_o), {}};
     const Vec3 way = s + o;
     f.delay = {-dot(way, a) / kLightSpeed, -dot(way, b) / kLightSpeed, -dot(way, c) / kLightSpeed};
     std::sort(f.delay.begin(), f.delay.end());
@@ -74,6 +77,16 @@ Pulse convex_lambert(const clray::Mesh& mesh, double rho, Vec3 s, Vec3 o) {
     return sum / total;
   };
   return pulse;
+}
+
+}  // namespace
+
+Pulse convex_lambert(const clray::Mesh& mesh, double rho, Vec3 s, Vec3 o) {
+  return sum_of_facets(mesh, s, o, [rho](double mu_i, double mu_o) { return rho / kPi * mu_i * mu_o; });
+}
+
+Pulse monostatic_facets(const clray::Mesh& mesh, Vec3 s, const std::function<double(double)>& intensity) {
+  return sum_of_facets(mesh, s, s, [&](double mu, double) { return intensity(mu); });
 }
 
 Pulse lambert_sphere(double rho, double radius) {
@@ -118,6 +131,12 @@ double lambert_phase(double alpha) {
 
 double ashikhmin_shirley_sphere_specular(double rho, double d, double n, double radius) {
   return 0.25 * radius * radius * (1.0 - d) * rho * (n + 1.0) / (n + 2.0);
+}
+
+double ashikhmin_shirley_facet(double rho, double d, double n, double mu) {
+  const double g = 1.0 - std::pow(1.0 - 0.5 * mu, 5), s = 1.0 - d;
+  return d * 28.0 * rho / (23.0 * kPi) * (1.0 - s * rho) * g * g * mu * mu +
+         (n + 1.0) / (8.0 * kPi) * s * rho * std::pow(mu, n + 1.0);
 }
 
 double ashikhmin_shirley_sphere(double rho, double d, double n, double radius) {

@@ -26,6 +26,9 @@ Cdf two_way(const std::function<double(double)>& share_of_depth);
 /// -(s + o)·x/c is linear, so its CDF over a triangle is piecewise quadratic.
 Pulse convex_lambert(const clray::Mesh& mesh, double rho, clray::Vec3 s, clray::Vec3 o);
 
+/// Facets of which none hides another, seen from where they are lit: `intensity` is A per m² at a cosine.
+Pulse monostatic_facets(const clray::Mesh& mesh, clray::Vec3 s, const std::function<double(double)>& intensity);
+
 Pulse lambert_sphere(double rho, double radius);
 Pulse lambert_disc(double rho, double radius, double tilt);
 Pulse lambert_plate(double rho, double a, double b, double tilt);  ///< tilted about the edge b
@@ -35,6 +38,8 @@ Pulse lambert_cylinder_side(double rho, double radius, double length);
 /// [sin α + (π − α) cos α]/π: Lambert sphere's phase function, 1 at α = 0.
 double lambert_phase(double alpha);
 
+/// Monostatic A of a square metre of Ashikhmin-Shirley facet at a cosine (PHYSICS section 3 with h = s, u = 1).
+double ashikhmin_shirley_facet(double rho, double d, double n, double mu);
 /// Monostatic A of an Ashikhmin-Shirley sphere: specular part R²/4·s·F0·(n+1)/(n+2), diffuse part by quadrature.
 double ashikhmin_shirley_sphere(double rho, double d, double n, double radius);
 /// Its specular part alone, in closed form.

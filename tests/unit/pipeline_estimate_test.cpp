@@ -8,6 +8,7 @@
 #include <random>
 
 #include "pipeline/estimate.hpp"
+#include "pipeline/outcome.hpp"
 
 using namespace clray;
 
@@ -173,4 +174,34 @@ TEST_CASE("FNV-1a gives its published answers") {
   CHECK(fnv1a(kFnvStart, "a", 1) == 0xaf63dc4c8601ec8cull);
   CHECK(fnv1a(kFnvStart, "foobar", 6) == 0x85944171f73967e8ull);
   CHECK(fnv1a(fnv1a(kFnvStart, "foo", 3), "bar", 3) == 0x85944171f73967e8ull);
+}
+
+TEST_CASE("the first total's error: of a number its own, of a vector that along it") {
+  const std::vector<double> x = numbers(16, 5), y = numbers(16, 6), z = numbers(16, 7);
+  ErrorPoint point;
+  largest_error({{{x}, 0.0}}, &point);
+  CHECK(point.first_total == estimate_mean(x).value);
+  CHECK(point.first_standard_error == doctest::Approx(estimate_mean(x).standard_error).epsilon(1e-14));
+  CHECK(point.relative_standard_error == doctest::Approx(point.first_standard_error / point.first_total));
+
+  // Each replicate's length along the mean direction, by hand.
+  const double m[3] = {estimate_mean(x).value, estimate_mean(y).value, estimate_mean(z).value};
+  const double length = std::sqrt(m[0] * m[0] + m[1] * m[1] + m[2] * m[2]);
+  double square = 0.0;
+  for (std::size_t r = 0; r < 16; ++r) {
+    const double along = (x[r] * m[0] + y[r] * m[1] + z[r] * m[2]) / length;
+    square += (along - length) * (along - length) / (16.0 * 15.0);
+  }
+  // A second target with a larger error decides the relative error, not the first total.
+  const std::vector<double> coarse = {1.0, 3.0, 1.0, 3.0, 1.0, 3.0, 1.0, 3.0, 1.0, 3.0, 1.0, 3.0, 1.0, 3.0, 1.0, 3.0};
+  largest_error({{{x, y, z}, 0.0}, {{coarse}, 0.0}}, &point);
+  CHECK(point.first_total == doctest::Approx(length).epsilon(1e-14));
+  CHECK(point.first_standard_error == doctest::Approx(std::sqrt(square)).epsilon(1e-12));
+  CHECK(point.relative_standard_error == doctest::Approx(0.5 * estimate_mean(coarse).standard_error));
+
+  const std::vector<double> none(16, 0.0);
+  largest_error({{{none, none, none}, 0.0}}, &point);
+  CHECK(point.first_total == 0.0);
+  CHECK(point.first_standard_error == 0.0);
+  CHECK(std::isnan(point.relative_standard_error));
 }
