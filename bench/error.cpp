@@ -27,8 +27,8 @@ const char* const kIntroduction =
     "the bit (checked at 2^14, 2^18 and 2^22 in the cases with bins). Of pressure the total is |C|, the error that "
     "along C. The bowl is a mesh whose\nfacets differ from the closed form by up to 0.02 %. The box-wing is "
     "meshes/box_wing.obj with its MTL; no part of it hides another in these views.\n"
-    "Of the sphere with n = 100000 a few rays in a million meet the peak: before they do, totals and claims are those "
-    "of the rest.\n";
+    "Of the sphere with n = 100000 some twenty rays in a million meet the peak: before they do, totals and claims are "
+    "those of the rest.\n";
 
 Curve measure_and_print(const ErrorCase& c, const Sampler& sampler, int most, const Options& options,
                         clray::Device& device, std::string* runs) {

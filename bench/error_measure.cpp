@@ -125,7 +125,7 @@ Curve measure(const ErrorCase& which, const Sampler& sampler, int most, const Op
 int affordable(const ErrorCase& which, const Options& options, clray::Device& device) {
   int most = options.max_log2_rays;
   if (options.max_seconds_per_case <= 0.0) return most;
-  const int pilot = std::min(most, 18);
+  const int pilot = std::min(most, 16);
   double seconds = 0.0;
   for (const Sampler& sampler : kSamplers) seconds += run(which, sampler, pilot, 1, device).seconds.trace;
   seconds *= options.seeds * std::pow(2.0, most - pilot);

@@ -91,17 +91,6 @@ std::string output_folder(const cli::Arguments& arguments, const Scene& scene) {
   return "clray-out/" + (scene.name.empty() ? std::string("scene") : scene.name);
 }
 
-void say_what_was_missed(const Result& result, const Scene& scene) {
-  const bool said = std::any_of(result.warnings.begin(), result.warnings.end(), [](const std::string& warning) {
-    return warning.find("target error was not reached") != std::string::npos;
-  });
-  if (result.target_asked && !result.target_reached && !said) {
-    std::fprintf(stderr, "clray: warning: the target of %g %% was not reached%s\n", scene.trace.target_error_percent,
-                 result.partial ? " in the time given" : "");
-  }
-  if (stop_signal) std::fputs("clray: interrupted: the result holds what was finished and is marked partial\n", stderr);
-}
-
 /// A station turns the pulse into photons; with a motion it also makes a session. Returns the link budget to print.
 std::string range_with_station(const Scene& scene, Device& device, Result& result, WriteOptions& options) {
   if (!scene.station || scene.source.kind != Source::Kind::laser || result.delay.empty()) return {};
@@ -161,7 +150,7 @@ int trace_and_write(const cli::Arguments& arguments, const Scene& scene, Warning
     print(cli::closing_table(result, scene, folder, files, arguments.reference.empty() ? nullptr : &reference));
     if (!budget.empty()) print("\n" + budget);
   }
-  say_what_was_missed(result, scene);
+  if (stop_signal) std::fputs("clray: interrupted: the result holds what was finished and is marked partial\n", stderr);
   return stop_signal ? 128 + stop_signal : 0;
 }
 

@@ -237,6 +237,15 @@ std::string file_list(const std::vector<std::string>& files) {
   return list;
 }
 
+std::string target_row(const Result& result) {
+  const std::string asked = fmt::format("{:g} %", result.target_percent);
+  if (std::isnan(result.reached_percent)) return asked + ": n/a, all totals are zero";
+  const std::string reached = fmt::format("{:.3g} %", result.reached_percent);
+  if (result.target_reached) return asked + ": reached " + reached;
+  return asked + ": " + (result.reached_percent <= result.target_percent ? "not confirmed, " : "not reached, ") +
+         reached + " (stopped by: " + result.stopped_by + ")";
+}
+
 }  // namespace
 
 std::string totals_line(const Result& result) {
@@ -276,6 +285,7 @@ std::string closing_table(const Result& result, const Scene& scene, const std::s
   const auto& s = result.seconds;
   table.row({"time", fmt::format("{} (load {}, BVH {}, compile {}, trace {})", short_time(s.total), short_time(s.load),
                                  short_time(s.bvh), short_time(s.compile), short_time(s.trace))});
+  if (result.target_asked) table.row({"target", target_row(result)});
   if (result.delay.size() == 1) one_pulse(table, result.delay.front());
   if (reference) {
     const double error = relative_true_error(result, *reference);

@@ -26,7 +26,8 @@ Json vector(const Vec3& v, double scale = 1.0) {
 Json value_and_error(const Estimate& estimate) {
   return {{"value", estimate.value},
           {"standard_error", estimate.standard_error},
-          {"confidence_95", {estimate.low, estimate.high}}};
+          {"confidence_95", {estimate.low, estimate.high}},
+          {"relative_variance_of_variance", estimate.relative_variance_of_variance}};
 }
 
 Json delay_entry(const DelayResult& delay) {
@@ -41,8 +42,10 @@ Json delay_entry(const DelayResult& delay) {
           {"cross_section_standard_error", 4.0 * kPi * a.standard_error},
           {"mean_delay_ns", delay.mean_delay_s.value * 1e9},
           {"mean_delay_standard_error_ns", delay.mean_delay_s.standard_error * 1e9},
+          {"mean_delay_relative_variance_of_variance", delay.mean_delay_s.relative_variance_of_variance},
           {"rms_width_ns", delay.rms_width_s.value * 1e9},
           {"rms_width_standard_error_ns", delay.rms_width_s.standard_error * 1e9},
+          {"rms_width_relative_variance_of_variance", delay.rms_width_s.relative_variance_of_variance},
           {"bins", delay.bin_m2_per_sr.size()},
           {"bin_ns", delay.bin_width_s * 1e9},
           {"first_bin_ns", delay.first_bin_start_s * 1e9},
@@ -57,6 +60,7 @@ Json spectrometer_entry(const SpectrometerResult& record) {
           {"intensity_m2_per_sr", record.intensity_m2_per_sr.value},
           {"standard_error", record.intensity_m2_per_sr.standard_error},
           {"confidence_95", {record.intensity_m2_per_sr.low, record.intensity_m2_per_sr.high}},
+          {"relative_variance_of_variance", record.intensity_m2_per_sr.relative_variance_of_variance},
           {"source_W_m2", record.source_W_m2},
           {"received_W_m2", record.received_W_m2},
           {"received_standard_error", record.received_W_m2_standard_error},
@@ -77,8 +81,10 @@ Json pressure_entry(const PressureResult& record, const Scene& scene) {
              {"torque_Nm_at_1361_W_m2", vector(t.value, kSolarConstant / kLightSpeed)},
              {"coefficient_m2", vector(c.value)},
              {"coefficient_standard_error", vector(c.standard_error)},
+             {"coefficient_relative_variance_of_variance", vector(c.relative_variance_of_variance)},
              {"torque_coefficient_m3", vector(t.value)},
              {"torque_coefficient_standard_error", vector(t.standard_error)},
+             {"torque_coefficient_relative_variance_of_variance", vector(t.relative_variance_of_variance)},
              {"absorbed_m2", value_and_error(record.absorbed_m2)}};
   for (std::size_t i = 0; i < record.component_m2.size(); ++i) {
     Json share{{"name", i < scene.components.size() ? scene.components[i].name : ""},
@@ -209,7 +215,12 @@ Json head_of(const Writer& writer) {
             {"identical", true},
             {"digest", hex16(r.digest)}};
   if (r.partial) head["partial"] = true;
-  if (r.target_asked) head["target_reached"] = r.target_reached;
+  if (r.target_asked) {
+    head["target_percent"] = r.target_percent;
+    head["target_reached"] = r.target_reached;
+    head["reached_percent"] = r.reached_percent;
+  }
+  head["stopped_by"] = r.stopped_by;
   const auto& device = r.device;
   head["device"] = {
       {"name", device.name}, {"platform", device.platform}, {"type", device.type}, {"driver", device.driver}};

@@ -43,7 +43,17 @@ double solve_student_t95(int freedom) {
   return 0.5 * (low + high);
 }
 
+/// Of sums of squares and fourth powers of the deviations: MCNP's VOV.
+double variance_of_variance(double second, double fourth, double count) {
+  return second > 0.0 ? fourth / (second * second) - 1.0 / count : std::numeric_limits<double>::quiet_NaN();
+}
+
 }  // namespace
+
+double normal_variance_of_variance(int replicates) {
+  const double count = replicates;
+  return 2.0 * (count - 2.0) / (count * (count + 1.0));
+}
 
 double student_t95(int freedom) {
   // Every estimate of every bin asks, always for one of the few counts of replicates that a run may have.
@@ -71,8 +81,7 @@ Estimate estimate_mean(const std::vector<double>& replicates) {
   const double half = student_t95(static_cast<int>(replicates.size()) - 1) * e.standard_error;
   e.low = e.value - half;
   e.high = e.value + half;
-  e.relative_variance_of_variance =
-      second > 0.0 ? fourth / (second * second) - 1.0 / count : std::numeric_limits<double>::quiet_NaN();
+  e.relative_variance_of_variance = variance_of_variance(second, fourth, count);
   return e;
 }
 
@@ -80,15 +89,19 @@ Estimate estimate_jackknife(double pooled, const std::vector<double>& left_out) 
   const double count = static_cast<double>(left_out.size());
   double mean = 0.0;
   for (const double x : left_out) mean += x / count;
-  double sum = 0.0;
-  for (const double x : left_out) sum += (x - mean) * (x - mean);
+  double second = 0.0, fourth = 0.0;
+  for (const double x : left_out) {
+    const double square = (x - mean) * (x - mean);
+    second += square;
+    fourth += square * square;
+  }
   Estimate e;
   e.value = pooled;
-  e.standard_error = std::sqrt(sum * (count - 1.0) / count);
+  e.standard_error = std::sqrt(second * (count - 1.0) / count);
   const double half = student_t95(static_cast<int>(left_out.size()) - 1) * e.standard_error;
   e.low = pooled - half;
   e.high = pooled + half;
-  e.relative_variance_of_variance = std::numeric_limits<double>::quiet_NaN();
+  e.relative_variance_of_variance = variance_of_variance(second, fourth, count);
   return e;
 }
 

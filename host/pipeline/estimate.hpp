@@ -12,6 +12,10 @@ namespace clray {
 /// Two-sided 95 % quantile of Student's t with `freedom` >= 1 degrees of freedom.
 double student_t95(int freedom);
 
+/// Mean of Estimate::relative_variance_of_variance over samples of normal replicates: kurtosis 3(R−1)/(R+1), less 1,
+/// over R.
+double normal_variance_of_variance(int replicates);
+
 /// Mean, standard error, interval and relative variance of the variance of at least two replicates.
 Estimate estimate_mean(const std::vector<double>& replicates);
 

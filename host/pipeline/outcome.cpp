@@ -147,8 +147,8 @@ class Writer {
       if (d.intensity_m2_per_sr.value > 0.0) {
         delay_moments(plan_, read_, v, l, c, &d);
       } else {
-        d.mean_delay_s.value = d.mean_delay_s.standard_error = kNan;
-        d.rms_width_s.value = d.rms_width_s.standard_error = kNan;
+        for (Estimate* e : {&d.mean_delay_s, &d.rms_width_s})
+          e->value = e->standard_error = e->relative_variance_of_variance = kNan;
       }
       d.first_bin_start_s = delay.first_m[c] / kLightSpeed;
       d.bin_width_s = delay.bin_m[c] / kLightSpeed;
@@ -197,6 +197,7 @@ class Writer {
       }));
       out.value[axis] = e.value;
       out.standard_error[axis] = e.standard_error;
+      out.relative_variance_of_variance[axis] = e.relative_variance_of_variance;
     }
     return out;
   }

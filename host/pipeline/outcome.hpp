@@ -2,16 +2,28 @@
 // What a pass ended with, and how its sums become results.
 #pragma once
 
+#include <cstdint>
+#include <limits>
+#include <vector>
+
 #include "pipeline/geometry.hpp"
 #include "pipeline/pass_runner.hpp"
 #include "pipeline/plan.hpp"
 
 namespace clray {
 
+/// Why a pass ended, and what its result then was.
+struct Ending {
+  const char* by = "";                                           ///< see Result::stopped_by
+  double half_width = std::numeric_limits<double>::quiet_NaN();  ///< 95 %, over the value, the largest over totals
+  std::uint64_t rays = 0;                                        ///< per orientation
+};
+
 struct PassOutcome {
   Sums sums;
   bool partial = false;
   bool target_asked = false, target_reached = false;
+  Ending ending;
   std::uint64_t rays_total = 0;  ///< per view, all phases
   std::vector<ErrorPoint> errors;
 };

@@ -15,6 +15,7 @@
 #include "pipeline/outcome.hpp"
 #include "pipeline/pass_runner.hpp"
 #include "pipeline/plan.hpp"
+#include "pipeline/warnings.hpp"
 
 namespace clray {
 namespace {
@@ -62,6 +63,8 @@ class PassDriver {
       run_fixed(kMostPoints);
       out_.partial = stopped_;  // running out of the time asked for is no early end
     }
+    out_.ending.half_width = t95_ * last_error_;
+    out_.ending.rays = static_cast<std::uint64_t>(static_cast<double>(out_.sums.points) * rays_per_point());
     return std::move(out_);
   }
 
@@ -82,9 +85,13 @@ class PassDriver {
   bool keep_going(const char* phase, double share, std::uint64_t from, std::uint64_t to) {
     if (hooks_.stop != nullptr && hooks_.stop->load()) {
       stopped_ = true;
+      out_.ending.by = "interrupt";
       return false;
     }
-    if (time_left_s_ > 0.0 && now() - start_ > time_left_s_) return false;
+    if (time_left_s_ > 0.0 && now() - start_ > time_left_s_) {
+      out_.ending.by = "time limit";
+      return false;
+    }
     if (hooks_.progress) {
       Progress p;
       p.phase = phase;
@@ -162,6 +169,7 @@ class PassDriver {
       throw Error(ErrorCode::usage, fmt::format("at most {} rays per orientation can be traced with {} replicates",
                                                 kMostPoints * plan_.replicates, plan_.replicates));
     target_ = options_.target_error_percent / 100.0;
+    out_.ending.by = options_.rays != 0 || target_ <= 0.0 ? "rays" : "samples";
     // Large cubes take longer to read than to trace: with no target to meet, three doublings tell the error's course.
     const std::uint64_t first = !plan_.pixels   ? kFirstPoints
                                 : target_ > 0.0 ? 1
@@ -182,6 +190,8 @@ class PassDriver {
   void finish_target(bool asked) {
     out_.target_asked = asked;
     out_.target_reached = asked && !out_.errors.empty() && !std::isnan(last_error_) && passes();
+    if (out_.target_reached) out_.ending.by = "target";
+    if (asked && !out_.errors.empty() && std::isnan(last_error_) && passes() && !out_.partial) out_.ending.by = "zero";
     for (const ErrorPoint& point : out_.errors) out_.rays_total = std::max(out_.rays_total, point.rays);
   }
 
@@ -191,51 +201,59 @@ class PassDriver {
   }
 
   /// Doubles until the target is met, then confirms once on fresh scrambles at equal size (at least `least` points);
-  /// the confirmation alone is the result. A confirmation that misses sends the search on.
+  /// the confirmation alone is the result. A confirmation that misses sends the search on; where the cap on rays does
+  /// not let it, that confirmation is the result: the search had met the target by luck.
   void run_to_target() {
     const bool asked = options_.target_error_percent > 0.0;
     target_ = asked ? options_.target_error_percent / 100.0 : kDefaultTarget;
-    const std::uint64_t most = std::min(options_.max_rays / plan_.replicates, kMostPoints);
+    const std::uint64_t most = std::clamp<std::uint64_t>(options_.max_rays / plan_.replicates, 1, kMostPoints);
     std::uint64_t least = 0;
     if (!asked) least = power_of_two_above(kLeastRays / plan_.replicates / plan_.views.size());
-    Sums search;
+    Sums search, confirmed;
     std::uint64_t spent = 0;
     begin_phase(0);
-    double search_seconds = 0.0;
-    std::uint32_t epoch = 0;
-    for (std::uint64_t n = kFirstPoints;; n *= 2) {
-      if (n > most || !advance("search", &search, n, 0)) {
-        out_.partial = n <= most;
+    double search_error = kNan;
+    bool done = false;
+    for (std::uint64_t n = std::min(kFirstPoints, power_of_two_above(most / 2 + 1)); !done; n *= 2) {
+      if (n > most) {
+        out_.ending.by = "max_rays";
         break;
       }
+      if (!advance("search", &search, n, 0)) break;
+      confirmed = Sums();
+      search_error = last_error_;
       if (!passes()) continue;
-      search_seconds = now() - phase_start_;
-      const double search_error = last_error_;
-      Sums confirmed;
+      const double search_seconds = now() - phase_start_;
       const std::uint64_t size = std::max(n, least);
-      begin_phase(size);
-      ++epoch;
-      bool complete = true;
-      for (std::uint64_t m = std::min(kFirstPoints, size); m <= size && complete; m *= 2)
-        complete = advance("confirm", &confirmed, m, epoch);
-      if (!complete) {
-        last_error_ = search_error;
-        out_.partial = true;
+      if (!confirm(size, &confirmed)) {
+        confirmed = Sums();
         break;
       }
       spent += size;
-      if (passes()) {
-        spent += search.points;
-        search = std::move(confirmed);
-        out_.target_reached = !std::isnan(last_error_);
-        break;
-      }
+      done = passes();
       begin_phase(0);
       phase_start_ -= search_seconds;
     }
+    if (done) out_.ending.by = std::isnan(last_error_) ? "zero" : "target";
+    const bool early = !done && std::string(out_.ending.by) != "max_rays";
+    out_.partial = early;
     out_.target_asked = asked;
-    out_.rays_total = (spent + (out_.target_reached ? 0 : search.points)) * plan_.replicates;
-    out_.sums = std::move(search);
+    out_.target_reached = done && !std::isnan(last_error_);
+    out_.rays_total = (spent + search.points) * plan_.replicates;
+    // What ends early equals a run with `rays` of the search's count, so it is the search's.
+    const bool fresh = confirmed.points != 0 && !early;
+    if (!fresh) last_error_ = search_error;
+    out_.sums = fresh ? std::move(confirmed) : std::move(search);
+  }
+
+  /// Traces `size` points on the next scrambles; false where cut short.
+  bool confirm(std::uint64_t size, Sums* confirmed) {
+    begin_phase(size);
+    ++epoch_;
+    for (std::uint64_t m = std::min(kFirstPoints, size); m <= size; m *= 2) {
+      if (!advance("confirm", confirmed, m, epoch_)) return false;
+    }
+    return true;
   }
 
   const TraceOptions& options_;
@@ -246,6 +264,7 @@ class PassDriver {
   double start_, time_left_s_, t95_;
   double phase_start_ = 0.0, target_ = 0.0, last_error_ = kNan;
   std::uint64_t phase_goal_ = 0;
+  std::uint32_t epoch_ = 0;
   bool stopped_ = false;
   PassOutcome out_;
 };
@@ -273,28 +292,6 @@ void add_unique(const std::vector<std::string>& from, std::vector<std::string>* 
   }
 }
 
-void warn(const Scene& scene, Result* result) {
-  result->warnings = scene.warnings;
-  const EnergyBooks& books = result->energy;
-  const bool nothing = books.started != 0 && books.incident_m2.value == 0.0 && books.capped == 0 && books.killed == 0 &&
-                       result->delay.empty() && result->spectrometer.empty();
-  bool dark = !result->delay.empty() || !result->spectrometer.empty();
-  for (const DelayResult& d : result->delay) dark = dark && d.intensity_m2_per_sr.value == 0.0;
-  for (const SpectrometerResult& s : result->spectrometer) dark = dark && s.intensity_m2_per_sr.value == 0.0;
-  if (nothing || dark) result->warnings.push_back("no hits: nothing that was lit is seen; all results are zero");
-  if (result->energy.unconnected_specular_m2.value > 0.0)
-    result->warnings.push_back(
-        fmt::format("mirrors reflect {:.4g} m² that no observer collects: give the observer acceptance_mrad",
-                    result->energy.unconnected_specular_m2.value));
-  if (result->diagnostics.truncated_energy_fraction > 0.01)
-    result->warnings.push_back(fmt::format("{:.2g} of the incident energy was cut off at max_bounces = {}",
-                                           result->diagnostics.truncated_energy_fraction, scene.trace.max_bounces));
-  if (result->diagnostics.above_window_fraction > 0.01 || result->diagnostics.below_window_fraction > 0.01)
-    result->warnings.push_back("more than 1 % of a pulse lies outside the delay window");
-  if (result->target_asked && !result->target_reached && !result->partial)
-    result->warnings.push_back("the target error was not reached within the rays allowed");
-}
-
 }  // namespace
 
 Result trace(const Scene& scene, Device& device, const TraceHooks& hooks) {
@@ -312,6 +309,7 @@ Result trace(const Scene& scene, Device& device, const TraceHooks& hooks) {
   result.digest = kFnvStart;
   bool target_reached = true;
   double spent = 0.0;
+  Ending ending;
   for (const PassPlan& plan : plans) {
     PassRunner runner(device, plan, geometry, scene.trace);
     result.seconds.compile += runner.compile_seconds();
@@ -326,7 +324,14 @@ Result trace(const Scene& scene, Device& device, const TraceHooks& hooks) {
     }
     result.partial = result.partial || outcome.partial;
     result.target_asked = result.target_asked || outcome.target_asked;
-    if (outcome.target_asked) target_reached = target_reached && outcome.target_reached;
+    if (outcome.target_asked) {
+      // The first pass without the target speaks for the result, else the one with the largest error.
+      if (target_reached && (!outcome.target_reached || !(outcome.ending.half_width <= ending.half_width)))
+        ending = outcome.ending;
+      target_reached = target_reached && outcome.target_reached;
+    } else if (!result.target_asked) {
+      ending = outcome.ending;
+    }
     const std::uint64_t rays = outcome.sums.points * plan.replicates *
                                (plan.pixels ? static_cast<std::uint64_t>(plan.width) * plan.height : 1);
     if (result.rays == 0) result.rays = rays;
@@ -336,13 +341,17 @@ Result trace(const Scene& scene, Device& device, const TraceHooks& hooks) {
     add_unique(plan.kept, &result.kept);
     add_unique(plan.left_out, &result.left_out);
     add_results(scene, plan, outcome, &result);
+    add_unique(doubtful_claims(plan, geometry, outcome.sums), &result.warnings);
   }
   result.target_reached = result.target_asked && target_reached && !result.partial;
+  if (result.target_asked) result.target_percent = scene.trace.target_error_percent;
+  result.reached_percent = 100.0 * ending.half_width;
+  result.stopped_by = ending.by;
   result.seconds.trace = spent;
   result.seconds.total = now() - start;
   check_diagnostics(result, scene.trace.allow_failures);
   std::vector<std::string> early = std::move(result.warnings);
-  warn(scene, &result);
+  add_warnings(scene, ending, &result);
   result.warnings.insert(result.warnings.end(), early.begin(), early.end());
   return result;
 }

@@ -92,11 +92,37 @@ TEST_CASE("an unknown device is status 4") {
 TEST_CASE("a reference is measured against") {
   const Scratch scratch;
   spit(scratch / "square.obj", square());
-  REQUIRE(clray(scratch, run_of({"--out", "first", "--no-plots"})).status == 0);
-  const auto outcome = clray(scratch, run_of({"--out", "second", "--no-plots", "--reference", "first/summary.json"}));
-  CHECK(outcome.status == 0);
-  CHECK(contains(outcome.out, "true error"));
-  CHECK(summary(scratch, "second")["relative_true_error"].get<double>() == 0.0);  // same seed, same result
+  // Tilted: the outline is met by chance, so that other seeds give other totals. A = rho/pi * area * mu^2.
+  const std::vector<std::string> tilted{"--source", "1,0.3,2", "--no-plots"};
+  const auto traced = [&](std::vector<std::string> more) {
+    more.insert(more.end(), tilted.begin(), tilted.end());
+    return clray(scratch, run_of(more));
+  };
+  REQUIRE(traced({"--out", "first"}).status == 0);
+  const double first = summary(scratch, "first")["detectors"]["delay"]["intensity_m2_per_sr"];
+  for (const char* file : {"first/summary.json", "first/delay.csv"}) {
+    CAPTURE(file);
+    const auto same = traced({"--out", "second", "--reference", file});
+    CHECK(same.status == 0);
+    CHECK(contains(same.out, "\n  true error     0 % against " + std::string(file)));
+    CHECK(summary(scratch, "second")["relative_true_error"].get<double>() == 0.0);  // same seed, same result
+
+    const auto other = traced({"--out", "third", "--seed", "2", "--sampler", "random", "--reference", file});
+    CHECK(other.status == 0);
+    const auto third = summary(scratch, "third");
+    const double value = third["detectors"]["delay"]["intensity_m2_per_sr"];
+    const double wanted = std::fabs(value - first) / first;
+    CHECK(wanted > 0.0);
+    CHECK(third["relative_true_error"].get<double>() == doctest::Approx(wanted).epsilon(1e-12));
+    CHECK_FALSE(contains(other.out, "true error     0 %"));
+    const std::string table = slurp(scratch / "third/error.csv");
+    CHECK(contains(table, "\nrays,seconds,relative_standard_error,relative_true_error,phase\n"));
+    // The last row is the result: its true error is the summary's.
+    const std::string last = table.substr(table.rfind('\n', table.size() - 2) + 1);
+    std::size_t at = 0;
+    for (int comma = 0; comma < 3; ++comma) at = last.find(',', at) + 1;
+    CHECK(std::stod(last.substr(at)) == doctest::Approx(wanted).epsilon(1e-12));
+  }
 }
 
 TEST_CASE("a signal ends early: what is finished is saved and marked, status 128 + signal") {
@@ -114,6 +140,7 @@ TEST_CASE("a signal ends early: what is finished is saved and marked, status 128
     REQUIRE(scratch.has("out/summary.json"));
     const auto result = summary(scratch, "out");
     CHECK(result.value("partial", false));
+    CHECK(result["stopped_by"] == "interrupt");
     CHECK(result["rays"].get<double>() < std::pow(2.0, 36));
   }
 }

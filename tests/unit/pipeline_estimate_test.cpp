@@ -205,3 +205,29 @@ TEST_CASE("the first total's error: of a number its own, of a vector that along 
   CHECK(point.first_standard_error == 0.0);
   CHECK(std::isnan(point.relative_standard_error));
 }
+
+TEST_CASE("relative variance of the variance: normal samples, one outlier, the jackknife of a mean") {
+  for (const int count : {4, 8, 16, 32, 64}) {
+    // 4000 samples; the standard deviation of one is at most 0.67 of the mean's own size (count 8), so 0.67/sqrt(4000).
+    double sum = 0.0;
+    for (std::uint64_t k = 0; k < 4000; ++k)
+      sum += estimate_mean(numbers(static_cast<std::size_t>(count), 1000 * k + 7)).relative_variance_of_variance / 4000;
+    CHECK(sum == doctest::Approx(normal_variance_of_variance(count)).epsilon(0.05));
+  }
+  // One of R differs: deviations (R-1)/R and -1/R, by hand.
+  std::vector<double> one(16, 0.0);
+  one[5] = 3.0;
+  const double p = 15.0 / 16.0, q = 1.0 / 16.0;
+  const double second = p * p + 15 * q * q, fourth = std::pow(p, 4) + 15 * std::pow(q, 4);
+  CHECK(estimate_mean(one).relative_variance_of_variance ==
+        doctest::Approx(fourth / (second * second) - 1.0 / 16.0).epsilon(1e-14));
+  // Leaving one out of a mean moves it by a multiple of that one's deviation: the same ratio.
+  const std::vector<double> x = numbers(16, 99);
+  double total = 0.0;
+  for (const double value : x) total += value;
+  std::vector<double> left_out;
+  for (const double value : x) left_out.push_back((total - value) / 15.0);
+  CHECK(estimate_jackknife(total / 16.0, left_out).relative_variance_of_variance ==
+        doctest::Approx(estimate_mean(x).relative_variance_of_variance).epsilon(1e-9));
+  CHECK(std::isnan(estimate_mean(std::vector<double>(16, 2.0)).relative_variance_of_variance));
+}

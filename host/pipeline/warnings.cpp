@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+// See warnings.hpp.
+#include "pipeline/warnings.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "pipeline/estimate.hpp"
+#include "pipeline/portable_tables.hpp"
+#include "pipeline/sum_reader.hpp"
+
+namespace clray {
+
+namespace {
+
+std::string reason(const Scene& scene, const std::string& by) {
+  if (by == "rays") return "these are the rays given";
+  if (by == "max_rays") return fmt::format("more than max_rays = {} are not allowed", scene.trace.max_rays);
+  if (by == "samples") return "a picture's search ends there: give it samples or rays";
+  if (by == "time limit") return fmt::format("stopped by the time limit of {:g} s", scene.trace.time_limit_s);
+  return "interrupted";
+}
+
+std::string missed_target(const Scene& scene, const Ending& ending) {
+  const double target = scene.trace.target_error_percent, reached = 100.0 * ending.half_width;
+  const std::string asked = fmt::format("the target error of {:g} %", target);
+  if (std::isnan(reached)) return fmt::format("{} is n/a: all totals are zero after {} rays", asked, ending.rays);
+  const std::string why = reason(scene, ending.by);
+  if (reached <= target)
+    return fmt::format("{} was met ({:.3g} % after {} rays) but not confirmed on fresh rays: {}", asked, reached,
+                       ending.rays, why);
+  return fmt::format("{} was not reached: {:.3g} % (95 % half-width over the value) after {} rays; {}", asked, reached,
+                     ending.rays, why);
+}
+
+constexpr double kTimesNormal = 4.0;   // the normal variance of the variance: 1 of 2000 normal samples of 16 lies above
+constexpr double kLeastError = 1e-6;   // relative; below it the spread is that of fixed-point rounding
+constexpr double kUnseenShare = 0.10;  // of a total
+
+/// Names what few replicates make; empty where nothing does.
+std::string few_replicates(const PassPlan& plan, const Geometry& geometry, const Sums& sums) {
+  const double normal = normal_variance_of_variance(static_cast<int>(plan.replicates));
+  int count = 0, doubtful = 0;
+  double largest = 0.0;
+  for (const Target& target : targets_of(plan, geometry, sums)) {
+    std::vector<Estimate> axes;
+    double square = target.scale * target.scale;
+    for (const auto& axis : target.components) {
+      axes.push_back(estimate_mean(axis));
+      if (!(target.scale > 0.0)) square += axes.back().value * axes.back().value;
+    }
+    bool bad = false;
+    for (const Estimate& e : axes) {
+      if (!(e.standard_error > kLeastError * std::sqrt(square))) continue;
+      bad = bad || e.relative_variance_of_variance > kTimesNormal * normal;
+      largest = std::max(largest, e.relative_variance_of_variance);
+    }
+    ++count;
+    doubtful += bad;
+  }
+  if (doubtful == 0) return "";
+  return fmt::format(
+      "the claimed error of {} rests on few of the {} replicates (relative variance of the variance {:.2g}, normal is "
+      "{:.2g}): do not trust it; trace more rays",
+      count == 1 ? "the total" : fmt::format("{} of {} totals", doubtful, count), plan.replicates, largest, normal);
+}
+
+double bound_of_lane(const PassPlan& plan, std::size_t lane, double cos_half_phase) {
+  double bound = 0.0;
+  const Surfaces& s = plan.surfaces;
+  for (std::size_t m = lane * s.columns; m < (lane + 1) * s.columns; ++m)
+    bound = std::max(bound, surface_bound(s.materials[m], s.tables, std::max(cos_half_phase, 1e-6)));
+  return bound;
+}
+
+/// The largest share of a total that could lie where no ray went, beyond what its claimed error allows for; 0 for none.
+double unseen_share(const PassPlan& plan, const Sums& sums) {
+  const SumReader read(plan, sums);
+  const double t95 = student_t95(static_cast<int>(plan.replicates) - 1);
+  double largest = 0.0;
+  for (std::size_t v = 0; v < plan.views.size(); ++v) {
+    for (std::size_t c = 0; c < plan.connections; ++c) {
+      const double *s = plan.views[v].toward, *o = plan.connection_rows[v * plan.connections + c].direction;
+      const double cos_half =
+          0.5 * std::sqrt(std::pow(s[0] + o[0], 2) + std::pow(s[1] + o[1], 2) + std::pow(s[2] + o[2], 2));
+      for (std::size_t l = 0; l < plan.lanes.size(); ++l) {
+        const Estimate a =
+            estimate_mean(per_replicate(plan, [&](std::uint32_t r) { return read.total(v, l, c, r, 0); }));
+        if (!(a.value > 0.0)) continue;
+        const double share = poisson_upper95(0) * bound_of_lane(plan, l, cos_half) * read.share(v) /
+                             static_cast<double>(plan.replicates) / a.value;
+        if (share > 2.0 * t95 * a.standard_error / a.value) largest = std::max(largest, share);
+      }
+    }
+  }
+  return largest;
+}
+
+}  // namespace
+
+std::vector<std::string> doubtful_claims(const PassPlan& plan, const Geometry& geometry, const Sums& sums) {
+  std::vector<std::string> warnings;
+  if (plan.pixels) return warnings;
+  const std::string few = few_replicates(plan, geometry, sums);
+  if (!few.empty()) warnings.push_back(few);
+  const double share = plan.connect ? unseen_share(plan, sums) : 0.0;
+  if (share > kUnseenShare) {
+    const double rays = static_cast<double>(sums.points) * plan.replicates * share / kUnseenShare;
+    warnings.push_back(
+        fmt::format("these surfaces can return a peak that the rays may have missed, with up to {:.2g} times a total: "
+                    "the claimed error knows nothing of it; {:.1g} rays would rule out {:g} %",
+                    share, rays, 100.0 * kUnseenShare));
+  }
+  return warnings;
+}
+
+void add_warnings(const Scene& scene, const Ending& ending, Result* result) {
+  result->warnings = scene.warnings;
+  const EnergyBooks& books = result->energy;
+  const bool nothing = books.started != 0 && books.incident_m2.value == 0.0 && books.capped == 0 && books.killed == 0 &&
+                       result->delay.empty() && result->spectrometer.empty();
+  bool dark = !result->delay.empty() || !result->spectrometer.empty();
+  for (const DelayResult& d : result->delay) dark = dark && d.intensity_m2_per_sr.value == 0.0;
+  for (const SpectrometerResult& s : result->spectrometer) dark = dark && s.intensity_m2_per_sr.value == 0.0;
+  if (nothing || dark) result->warnings.push_back("no hits: nothing that was lit is seen; all results are zero");
+  if (result->energy.unconnected_specular_m2.value > 0.0)
+    result->warnings.push_back(
+        fmt::format("mirrors reflect {:.4g} m² that no observer collects: give the observer acceptance_mrad",
+                    result->energy.unconnected_specular_m2.value));
+  if (result->diagnostics.truncated_energy_fraction > 0.01)
+    result->warnings.push_back(fmt::format("{:.2g} of the incident energy was cut off at max_bounces = {}",
+                                           result->diagnostics.truncated_energy_fraction, scene.trace.max_bounces));
+  if (result->diagnostics.above_window_fraction > 0.01 || result->diagnostics.below_window_fraction > 0.01)
+    result->warnings.push_back("more than 1 % of a pulse lies outside the delay window");
+  if (result->target_asked && !result->target_reached) result->warnings.push_back(missed_target(scene, ending));
+}
+
+}  // namespace clray

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a run warns of besides its numbers: nothing seen, energy cut off, a target not reached, claims not to be
+// trusted.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "clray/result.hpp"
+#include "clray/scene.hpp"
+#include "pipeline/outcome.hpp"
+
+namespace clray {
+
+/// Appends the scene's warnings and those of a finished result; `ending` says why its tracing stopped.
+void add_warnings(const Scene& scene, const Ending& ending, Result* result);
+
+/// What speaks against trusting the claimed errors of a pass: totals that rest on few replicates, and peaks that a
+/// surface could send back between the rays (docs/results.md, "Whether a claimed error can be trusted").
+std::vector<std::string> doubtful_claims(const PassPlan& plan, const Geometry& geometry, const Sums& sums);
+
+}  // namespace clray
