@@ -3,7 +3,6 @@
 #include "bench.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -44,14 +43,6 @@ void write_text(const std::string& folder, const std::string& name, const std::s
   file.close();
   if (!file) throw std::runtime_error("cannot write " + part);
   std::filesystem::rename(part, path);
-}
-
-bool gnuplot(const std::string& script) {
-  FILE* pipe = popen("gnuplot", "w");
-  const bool written = pipe && std::fwrite(script.data(), 1, script.size(), pipe) == script.size();
-  const bool good = pipe && pclose(pipe) == 0 && written;
-  if (!good) std::fprintf(stderr, "clray-bench: no picture: gnuplot did not run\n");
-  return good;
 }
 
 std::string device_line() {

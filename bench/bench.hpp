@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the benchmarks of clray-bench share: options, Markdown tables, CSV files and gnuplot.
+// What the benchmarks of clray-bench share: options, Markdown tables and files.
 #pragma once
 
 #include <string>
@@ -34,9 +34,6 @@ std::string markdown(const std::vector<std::vector<std::string>>& rows);
 
 /// Writes text to `folder`/`name`, by way of a temporary file. Throws std::runtime_error.
 void write_text(const std::string& folder, const std::string& name, const std::string& text);
-
-/// Runs gnuplot on a script; false (with a line on stderr) if there is none or it fails.
-bool gnuplot(const std::string& script);
 
 /// "device, driver" of what the benchmarks ran on.
 std::string device_line();

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "error_report.hpp"
+#include "text/gnuplot.hpp"
 
 namespace clray_bench {
 
@@ -17,38 +18,43 @@ constexpr int kColumns = 3;
 /// A normal error stays within 1.645 standard errors in 90 % of cases.
 constexpr double kNinety = 1.645;
 
-std::string panel(const Curve* curves) {
-  std::string data, lines;
+void panel(clray::text::Plot& plot, const Curve* curves) {
+  std::string lines;
   for (int k = 0; k < kSamplerCount; ++k) {
     const Curve& c = curves[k];
-    data += fmt::format("${} << EOD\n", c.sampler.name);
+    plot.begin_data(c.sampler.name);
     for (const Point& p : c.points)
-      data += fmt::format("{} {} {}\n", median(p.seconds), std::max(quantile(p.truth, 0.9), 1e-16),
-                          std::max(kNinety * median(p.claim), 1e-16));
-    data += "EOD\n";
+      plot.point(
+          {median(p.seconds), std::max(quantile(p.truth, 0.9), 1e-16), std::max(kNinety * median(p.claim), 1e-16)});
+    plot.end_data();
     lines += fmt::format(
-        "{}${} using 1:2 with linespoints pt 7 ps 0.6 lw 1.6 lc rgb '{}' title '{}', ${} using 1:3 with lines dt 2 lw "
-        "1.6 lc rgb '{}' notitle",
+        "{}${} using 1:2 with linespoints pt 7 ps 0.7 lw 1.2 lc rgb '{}' title '{}', ${} using 1:3 with lines dt 2 lw "
+        "1.2 lc rgb '{}' notitle",
         k == 0 ? "plot " : ", ", c.sampler.name, kColours[k], c.sampler.name, c.sampler.name, kColours[k]);
   }
-  return data + fmt::format("set title '{}'\n", curves->which->name) + lines + "\n";
+  plot.line("set title " + clray::text::gnuplot_text(curves->which->name)).line(lines);
 }
 
 }  // namespace
 
 void plot_error(const std::string& folder, const std::string& name, const std::vector<Curve>& curves) {
   const int cases = static_cast<int>(curves.size()) / kSamplerCount, rows = (cases + kColumns - 1) / kColumns;
-  std::string script = fmt::format(
-      "set encoding utf8\nset terminal pngcairo size 1500,{} font 'DejaVu Sans,11'\nset output '{}/{}'\nset multiplot "
-      "layout {},{} title 'Relative error against tracing time: within which 90 % of seeds lie (solid: true; dashed: "
-      "claimed, 1.645 standard errors)' font ',14'\nset logscale xy\nset format xy '10^{{%L}}'\nset grid xtics ytics "
-      "lt 1 "
-      "lc rgb '#dddddd'\nset key bottom left samplen 2 opaque nobox\nset xlabel 'tracing, s' offset 0,0.5\nset ylabel "
-      "'relative error' offset 1,0\n",
-      360 * rows + 60, folder, name, rows, kColumns);
-  for (int i = 0; i < cases; ++i) script += panel(&curves[static_cast<std::size_t>(i * kSamplerCount)]);
+  clray::text::Plot plot(name, 1800, 420 * rows + 60);
+  plot.line(
+      fmt::format("set multiplot layout {},{} title 'Relative error against tracing time: within which 90 % of "
+                  "seeds lie (solid: true; dashed: claimed, 1.645 standard errors)' font ',18'",
+                  rows, kColumns));
+  plot.line(
+      "set lmargin; set rmargin; set bmargin; set logscale xy; set format xy '10^{%L}'; set xtics 10; set ytics 10");
+  plot.line(
+      "set key bottom left noopaque nobox width 0 font ',13'; set xlabel 'tracing, s' offset 0,0.3; set ylabel "
+      "'relative "
+      "error'");
+  for (int i = 0; i < cases; ++i) panel(plot, &curves[static_cast<std::size_t>(i * kSamplerCount)]);
+  plot.line("unset multiplot");
   std::filesystem::create_directories(folder);
-  gnuplot(script + "unset multiplot\n");
+  const std::string trouble = plot.draw(folder);
+  if (!trouble.empty()) fmt::print(stderr, "clray-bench: {}\n", trouble);
 }
 
 }  // namespace clray_bench

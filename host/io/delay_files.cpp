@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "io/fits_file.hpp"
-#include "io/text.hpp"
 #include "io/writer.hpp"
+#include "text/text.hpp"
 
 namespace clray::io {
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "io/text.hpp"
 #include "io/writer.hpp"
+#include "text/text.hpp"
 
 namespace clray::io {
 

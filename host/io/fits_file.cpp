@@ -7,9 +7,11 @@
 #include <algorithm>
 
 #include "clray/error.hpp"
-#include "io/text.hpp"
+#include "text/text.hpp"
 
 namespace clray::io {
+
+using namespace text;
 
 namespace {
 

@@ -7,8 +7,8 @@
 #include "io/colour.hpp"
 #include "io/fits_file.hpp"
 #include "io/picture_file.hpp"
-#include "io/text.hpp"
 #include "io/writer.hpp"
+#include "text/text.hpp"
 
 namespace clray::io {
 

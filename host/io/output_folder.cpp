@@ -17,9 +17,11 @@
 
 #include "clray/error.hpp"
 #include "clray/result.hpp"
-#include "io/text.hpp"
+#include "text/text.hpp"
 
 namespace clray::io {
+
+using namespace text;
 
 namespace fs = std::filesystem;
 

@@ -16,9 +16,11 @@
 
 #include "clray/error.hpp"
 #include "io/output_folder.hpp"
-#include "io/text.hpp"
+#include "text/text.hpp"
 
 namespace clray::io {
+
+using namespace text;
 
 namespace {
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <map>
 
-#include "io/text.hpp"
 #include "io/writer.hpp"
+#include "text/text.hpp"
 
 namespace clray::io {
 

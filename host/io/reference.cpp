@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "clray/error.hpp"
-#include "io/text.hpp"
 #include "io/writer.hpp"
+#include "text/text.hpp"
 
 namespace clray {
 

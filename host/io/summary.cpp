@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "io/text.hpp"
 #include "io/writer.hpp"
+#include "text/text.hpp"
 
 namespace clray::io {
 

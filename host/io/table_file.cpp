@@ -5,9 +5,11 @@
 #include <cerrno>
 
 #include "io/output_folder.hpp"
-#include "io/text.hpp"
+#include "text/text.hpp"
 
 namespace clray::io {
+
+using namespace text;
 
 TableFile::TableFile(const std::string& path, const Result& result, const Scene& scene, const std::string& what,
                      const std::string& units)

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "clray/error.hpp"
-#include "io/text.hpp"
+#include "text/text.hpp"
 
 namespace clray::io {
 

@@ -7,11 +7,13 @@
 #include <vector>
 
 #include "clray/result.hpp"
-#include "io/gnuplot.hpp"
 #include "io/output_folder.hpp"
 #include "io/table_file.hpp"
+#include "text/gnuplot.hpp"
 
 namespace clray::io {
+
+using namespace text;
 
 /// One result on its way to disk.
 struct Writer {

@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "clray/error.hpp"
-#include "io/text.hpp"
+#include "text/text.hpp"
 #include "unit/io_support.hpp"
 
 using namespace clray;
@@ -182,33 +182,12 @@ TEST_CASE("summary.json: what it says is what was found; NaN is null") {
   CHECK(read_table(scratch / "out/delay.csv").comments.size() == 8);
 }
 
-TEST_CASE("numbers do not follow the locale, and every double survives") {
-  // Without a comma locale on the machine this checks the classic one only.
-  for (const char* locale : {"de_DE.UTF-8", "fr_FR.UTF-8"}) std::setlocale(LC_ALL, locale);
-  const double values[] = {0.1,  1.0 / 3.0,  5e-324, std::numeric_limits<double>::max(), -2.2250738585072014e-308,
-                           1e22, 123456789.0};
-  for (const double value : values) CHECK(parse(io::number(value)) == value);
-  CHECK(io::number(std::nan("")) == "nan");
-  CHECK(io::number(-std::numeric_limits<double>::infinity()) == "-inf");
-  CHECK(io::number(1.5).find(',') == std::string::npos);
-  std::setlocale(LC_ALL, "C");
-}
-
 TEST_CASE("a number beside its error keeps two digits of the error") {
   CHECK(format_with_error(0.68504, 0.00144) == "0.6850 ± 0.0014");
   CHECK(format_with_error(1234.5, 12.3) == "1234 ± 12");
   CHECK(format_with_error(4.56e-6, 1.2e-8) == "(4.560 ± 0.012)e-6");
   CHECK(format_with_error(2.5, 0.0) == "2.5 ± 0");
   CHECK(format_with_error(std::nan(""), 1.0) == "n/a");
-}
-
-TEST_CASE("file names from users' names: no separators, no leading dot, never empty") {
-  CHECK(io::file_name_part("../../etc") == "_._.._etc");
-  CHECK(io::file_name_part("a b\n'\"") == "a_b___");
-  CHECK(io::file_name_part("Ünïcode") == "Ünïcode");
-  CHECK(io::file_name_part("") == "unnamed");
-  CHECK(io::file_name_part(".hidden") == "_hidden");
-  CHECK(io::file_name_part(std::string(500, 'x')).size() == 80);
 }
 
 TEST_CASE("names that become alike get files of their own") {

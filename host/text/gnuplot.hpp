@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Plots through gnuplot's standard input: one look for all of clray's pictures, 1200 x 750 pixels.
+// Plots through gnuplot's standard input: one look for all of clray's pictures, of results, sessions and
+// benchmarks alike; 1200 x 750 pixels unless told otherwise.
 #pragma once
 
 #include <string>
 #include <string_view>
 
-namespace clray::io {
+namespace clray::text {
 
 /// Text as a gnuplot string literal, on one line, to be shown as it is.
 std::string gnuplot_text(std::string_view text);
@@ -28,4 +29,4 @@ class Plot {
   std::string file_, script_;
 };
 
-}  // namespace clray::io
+}  // namespace clray::text

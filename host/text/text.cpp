@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Numbers and names as text in result files; see text.hpp. Only std::to_chars is used for numbers: printf and
 // streams follow the locale.
-#include "io/text.hpp"
+#include "text/text.hpp"
 
 #include <charconv>
 #include <cmath>
 
 #include "clray/result.hpp"
 
-namespace clray::io {
+namespace clray::text {
 
 namespace {
 
@@ -108,12 +108,12 @@ std::string hex16(unsigned long long value) {
   return digits;
 }
 
-}  // namespace clray::io
+}  // namespace clray::text
 
 namespace clray {
 
 std::string format_with_error(double value, double error) {
-  using io::rounded;
+  using text::rounded;
   if (!std::isfinite(value)) return "n/a";
   if (!std::isfinite(error)) return rounded(value, 6) + " ± n/a";
   if (error == 0.0) return rounded(value, 6) + " ± 0";
@@ -123,14 +123,14 @@ std::string format_with_error(double value, double error) {
   const bool plain = power > -4 && power < 7 && error_power < 2;
   if (plain) {
     const int decimals = 1 - error_power > 15 ? 15 : 1 - error_power;
-    return io::chars(value, std::chars_format::fixed, decimals) + " ± " +
-           io::chars(error, std::chars_format::fixed, decimals);
+    return text::chars(value, std::chars_format::fixed, decimals) + " ± " +
+           text::chars(error, std::chars_format::fixed, decimals);
   }
   const double scale = std::pow(10.0, power);
   int decimals = power - error_power + 1;
   decimals = decimals < 0 ? 0 : decimals > 15 ? 15 : decimals;
-  return "(" + io::chars(value / scale, std::chars_format::fixed, decimals) + " ± " +
-         io::chars(error / scale, std::chars_format::fixed, decimals) + ")e" + std::to_string(power);
+  return "(" + text::chars(value / scale, std::chars_format::fixed, decimals) + " ± " +
+         text::chars(error / scale, std::chars_format::fixed, decimals) + ")e" + std::to_string(power);
 }
 
 }  // namespace clray

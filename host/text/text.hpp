@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace clray::io {
+namespace clray::text {
 
 /// Shortest text that reads back to the same double; "nan", "inf" and "-inf" for what is not finite.
 std::string number(double value);
@@ -27,4 +27,4 @@ std::string ascii(std::string_view text);
 /// 16 hexadecimal digits.
 std::string hex16(unsigned long long value);
 
-}  // namespace clray::io
+}  // namespace clray::text

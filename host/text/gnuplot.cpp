@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Plots through gnuplot's standard input; see gnuplot.hpp. The script goes through an unnamed temporary file, so that
 // neither a full pipe nor a dying gnuplot can hang or kill us; a process group of its own keeps Ctrl-C away from it.
-#include "io/gnuplot.hpp"
+#include "text/gnuplot.hpp"
 
 #include <fcntl.h>
 #include <spawn.h>
@@ -17,9 +17,9 @@
 #include <memory>
 #include <vector>
 
-#include "io/text.hpp"
+#include "text/text.hpp"
 
-namespace clray::io {
+namespace clray::text {
 
 std::string gnuplot_text(std::string_view text) {
   std::string literal = "'";
@@ -136,4 +136,4 @@ std::string Plot::draw(const std::string& folder) const {
   return "no " + file_ + ": gnuplot failed: " + first_words(complaints.get());
 }
 
-}  // namespace clray::io
+}  // namespace clray::text

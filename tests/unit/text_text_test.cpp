@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// Numbers and names as text, and what goes to gnuplot.
+#include "text/text.hpp"
+
+#include <doctest/doctest.h>
+
+#include <charconv>
+#include <clocale>
+#include <cmath>
+#include <limits>
+
+#include "text/gnuplot.hpp"
+
+using namespace clray::text;
+
+namespace {
+
+double parse(const std::string& text) {
+  double value = std::nan("");
+  std::from_chars(text.data(), text.data() + text.size(), value);
+  return value;
+}
+
+}  // namespace
+
+TEST_CASE("numbers do not follow the locale, and every double survives") {
+  // Without a comma locale on the machine this checks the classic one only.
+  for (const char* locale : {"de_DE.UTF-8", "fr_FR.UTF-8"}) std::setlocale(LC_ALL, locale);
+  const double values[] = {0.1,  1.0 / 3.0,  5e-324, std::numeric_limits<double>::max(), -2.2250738585072014e-308,
+                           1e22, 123456789.0};
+  for (const double value : values) CHECK(parse(number(value)) == value);
+  CHECK(number(std::nan("")) == "nan");
+  CHECK(number(-std::numeric_limits<double>::infinity()) == "-inf");
+  CHECK(number(1.5).find(',') == std::string::npos);
+  std::setlocale(LC_ALL, "C");
+}
+
+TEST_CASE("file names from users' names: no separators, no leading dot, never empty") {
+  CHECK(file_name_part("../../etc") == "_._.._etc");
+  CHECK(file_name_part("a b\n'\"") == "a_b___");
+  CHECK(file_name_part("Ünïcode") == "Ünïcode");
+  CHECK(file_name_part("") == "unnamed");
+  CHECK(file_name_part(".hidden") == "_hidden");
+  CHECK(file_name_part(std::string(500, 'x')).size() == 80);
+}
+
+TEST_CASE("a user's text reaches gnuplot as it is, on one line") {
+  CHECK(gnuplot_text("it's a\n`name`_1") == "'it''s a `name`_1' noenhanced");
+}
+
+TEST_CASE("a script that fails says so and leaves no picture; names no folder, too") {
+  Plot plot("nothing.png");
+  plot.line("plot no_such_thing(x)");
+  CHECK(plot.draw(".").rfind("no nothing.png: gnuplot ", 0) == 0);
+  CHECK(Plot("nothing.png").draw("/no/such/folder").rfind("no nothing.png: ", 0) == 0);
+}
