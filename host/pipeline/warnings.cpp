@@ -10,6 +10,7 @@
 #include "pipeline/estimate.hpp"
 #include "pipeline/portable_tables.hpp"
 #include "pipeline/sum_reader.hpp"
+#include "scene/tables.hpp"
 
 namespace clray {
 
@@ -67,6 +68,17 @@ std::string few_replicates(const PassPlan& plan, const Geometry& geometry, const
       count == 1 ? "the total" : fmt::format("{} of {} totals", doubtful, count), plan.replicates, largest, normal);
 }
 
+/// Whether a normal may lie anywhere between those that rays met: curved shapes, and meshes so fine that many of their
+/// facets were never met. A few flat faces show their whole lobe to the first rays that meet them.
+bool curved(const Geometry& geometry, double rays) {
+  constexpr double kRaysPerFacet = 100.0;
+  const int box = table_index("shape", "box");
+  for (const ClrayPrimitive& p : geometry.primitives) {
+    if ((p.flags & CLRAY_PRIMITIVE_PLANE) == 0 && static_cast<int>(p.shape) != box) return true;
+  }
+  return kRaysPerFacet * static_cast<double>(geometry.report.triangles) > rays;
+}
+
 double bound_of_lane(const PassPlan& plan, std::size_t lane, double cos_half_phase) {
   double bound = 0.0;
   const Surfaces& s = plan.surfaces;
@@ -105,13 +117,13 @@ std::vector<std::string> doubtful_claims(const PassPlan& plan, const Geometry& g
   if (plan.pixels) return warnings;
   const std::string few = few_replicates(plan, geometry, sums);
   if (!few.empty()) warnings.push_back(few);
-  const double share = plan.connect ? unseen_share(plan, sums) : 0.0;
+  const double rays = static_cast<double>(sums.points) * plan.replicates;
+  const double share = plan.connect && curved(geometry, rays) ? unseen_share(plan, sums) : 0.0;
   if (share > kUnseenShare) {
-    const double rays = static_cast<double>(sums.points) * plan.replicates * share / kUnseenShare;
     warnings.push_back(
         fmt::format("these surfaces can return a peak that the rays may have missed, with up to {:.2g} times a total: "
                     "the claimed error knows nothing of it; {:.1g} rays would rule out {:g} %",
-                    share, rays, 100.0 * kUnseenShare));
+                    share, rays * share / kUnseenShare, 100.0 * kUnseenShare));
   }
   return warnings;
 }

@@ -161,3 +161,12 @@ TEST_CASE("a claim that cannot know of a narrow peak, or rests on one replicate,
   }
   CHECK(few > 0);
 }
+
+TEST_CASE("flat faces that rays have met hide no peak, however sharp their surface") {
+  const Scratch scratch;
+  spit(scratch / "square.obj", square());
+  const auto outcome = clray(scratch, {"--device", "cpu", "square.obj", "--no-plots", "--rays", "2048", "--source",
+                                       "1,0,2", "--material", "ashikhmin-shirley rho=0.5 d=0.2 n=100000"});
+  CHECK(outcome.status == 0);
+  CHECK_FALSE(contains(outcome.err, "a peak"));
+}
