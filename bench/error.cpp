@@ -20,7 +20,7 @@ const char* const kIntroduction =
     "`sobol`, Owen-scrambled Sobol points on it; `stratified`, the default: such points on what the body can be in, in "
     "order of delay.\n"
     "Claimed: the standard error over the value; a fair claim has a median true error of 0.67 of it. Slope: of the "
-    "root mean square (rms) true\nerror against rays, from the first ray count to the last. Time to p %: tracing until "
+    "root mean square (rms) true\nerror against rays, where that is below 30 %. Time to p %: tracing until "
     "90 % of seeds are that near (~: by the slope).\n"
     "One run a seed gives every doubling from 2^14 rays on: its points begin with those of a shorter run, and its "
     "totals there are equal to\n"

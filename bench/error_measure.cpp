@@ -14,7 +14,8 @@ namespace clray_bench {
 
 namespace {
 
-constexpr int kFirstDoubling = 14;  ///< of a run's own record: 2^10 points in each of 16 replicates
+constexpr int kFirstDoubling = 14;   ///< of a run's own record: 2^10 points in each of 16 replicates
+constexpr double kStillBlind = 0.3;  ///< rms error of rays that have not yet met what matters: no slope there
 constexpr int kBinRays[] = {14, 18, 22};
 
 clray::Result run(const ErrorCase& which, const Sampler& sampler, int log2_rays, int seed, clray::Device& device) {
@@ -137,7 +138,7 @@ double slope_of(const Curve& curve) {
   double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
   for (const Point& p : curve.points) {
     const double e = rms(p.truth);
-    if (!(e > 3.0 * std::max(curve.which->model_error, 1e-10))) continue;
+    if (!(e > 3.0 * std::max(curve.which->model_error, 1e-10)) || e > kStillBlind) continue;
     const double x = p.log2_rays, y = std::log2(e);
     n += 1, sx += x, sy += y, sxx += x * x, sxy += x * y;
   }

@@ -61,7 +61,8 @@ Curve measure(const ErrorCase& which, const Sampler& sampler, int most, const Op
 /// The largest log2 of rays at which all samplers and seeds of a case trace for at most `seconds` (0: no limit).
 int affordable(const ErrorCase& which, const Options& options, clray::Device& device);
 
-/// Slope of log(rms true error) against log(rays), by least squares over points above the case's own model error.
+/// Slope of log(rms true error) against log(rays), by least squares over points below 30 % and above the case's own
+/// model error.
 double slope_of(const Curve& curve);
 
 }  // namespace clray_bench
