@@ -30,6 +30,7 @@ std::vector<Case> stability_cases();
 
 std::vector<Case> bitwise_cases();
 std::vector<Case> geometry_cases();
+std::vector<Case> aimed_cases();
 std::vector<Case> surface_cases();
 std::vector<Case> bin_cases();
 std::vector<Case> coverage_cases();
