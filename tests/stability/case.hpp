@@ -32,6 +32,7 @@ std::vector<Case> bitwise_cases();
 std::vector<Case> geometry_cases();
 std::vector<Case> aimed_cases();
 std::vector<Case> surface_cases();
+std::vector<Case> lobe_cases();
 std::vector<Case> bin_cases();
 std::vector<Case> coverage_cases();
 
