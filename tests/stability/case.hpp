@@ -34,6 +34,7 @@ std::vector<Case> aimed_cases();
 std::vector<Case> surface_cases();
 std::vector<Case> lobe_cases();
 std::vector<Case> bin_cases();
+std::vector<Case> photon_cases();
 std::vector<Case> coverage_cases();
 
 /// A sum of equal weights: each is rounded alike, by up to half of 2^-37 of the largest weight (DESIGN, Kernels).
