@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The stiff and extreme cases: each says what must hold, measures it, and says where its tolerance comes from.
-// clray-bench stability prints them all; the tests run those marked `quick`.
+// clray-bench stability prints them all, those marked `long_run` where CLRAY_LONG_TESTS=1 or --only asks for them; the
+// tests run those marked `quick`.
 #pragma once
 
 #include <functional>
@@ -17,12 +18,13 @@ struct Outcome {
 };
 
 struct Case {
-  std::string area;  ///< "bitwise", "geometry", "surfaces", "bins", "coverage"
+  std::string area;  ///< "bitwise", "geometry", "surfaces", "bins", "statistics", "coverage"
   std::string name;
   std::string must_hold;
   std::string tolerance;  ///< and where it comes from
   bool quick = true;
   std::function<Outcome()> run;
+  bool long_run = false;  ///< takes many minutes: run only if it is asked for
 };
 
 /// All cases, in the order in which they are reported.
@@ -35,6 +37,7 @@ std::vector<Case> surface_cases();
 std::vector<Case> lobe_cases();
 std::vector<Case> bin_cases();
 std::vector<Case> photon_cases();
+std::vector<Case> statistics_cases();
 std::vector<Case> coverage_cases();
 
 /// A sum of equal weights: each is rounded alike, by up to half of 2^-37 of the largest weight (DESIGN, Kernels).

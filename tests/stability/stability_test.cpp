@@ -29,3 +29,6 @@ TEST_CASE("stability: surfaces") {
 TEST_CASE("stability: bins") {
   run_area("bins");
 }
+TEST_CASE("stability: statistics") {
+  run_area("statistics");
+}
