@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Histograms at their limits: singular pulses, bin edges on a plate, bins from femtoseconds to one for all, and
-// windows that see nothing. And the honesty of claimed errors.
+// windows that see nothing.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -84,20 +84,6 @@ Outcome outside() {
   return outcome;
 }
 
-Outcome coverage(int seeds, bool sobol) {
-  Scene scene = scene_of("sphere", {{"radius", 1.0}}, lambert(0.5));
-  scene.trace.sobol = sobol;
-  int held = 0;
-  for (int seed = 1; seed <= seeds; ++seed) {
-    const clray::Estimate a = run(rays(scene, 12, 1000u + static_cast<unsigned>(seed))).delay.at(0).intensity_m2_per_sr;
-    held += a.low <= 1.0 / 3.0 && 1.0 / 3.0 <= a.high;
-  }
-  const double share = 1.0 * held / seeds;
-  // Three standard deviations of a fair 95 % for few seeds; 92 to 98 % for 400.
-  const double slack = std::max(0.03, 3.0 * std::sqrt(0.95 * 0.05 / seeds));
-  return {std::fabs(share - 0.95) <= slack, fmt::format("{:.1f} % of {}", 100.0 * share, seeds)};
-}
-
 }  // namespace
 
 std::vector<Case> bin_cases() {
@@ -111,15 +97,6 @@ std::vector<Case> bin_cases() {
       {"bins", "10⁶ bins", "bins, below and above add up to the total", "1e-12: pairwise errors of 10⁶ additions", true,
        [] { return bins_of(1000000, 0.0); }},
       {"bins", "everything outside the window", "kept in below and above", "1e-15", true, outside},
-  };
-}
-
-std::vector<Case> coverage_cases() {
-  return {
-      {"coverage", "sphere, Sobol, 400 seeds", "95 % intervals hold the exact total", "92 to 98 %", false,
-       [] { return coverage(400, true); }},
-      {"coverage", "sphere, random, 400 seeds", "95 % intervals hold the exact total", "92 to 98 %", false,
-       [] { return coverage(400, false); }},
   };
 }
 
