@@ -69,7 +69,7 @@ std::vector<Case> lobe_cases() {
   std::vector<Case> cases;
   for (double n : {1.0, 10.0, 1e3, 1e4, 1e5, 1e6})
     cases.push_back({"surfaces", fmt::format("peak of n = {:g} to 8 lobe widths", n), "the formula in long double",
-                     "eps·(21 + 14·|log cosⁿ⁺¹|): roundings counted, those of the exponent amplified by it", true,
+                     "eps·(21 + 14·(n+1)·log 1/cos): roundings counted, those of the exponent amplified by it", true,
                      [n] { return lobe(n); }});
   return cases;
 }
