@@ -7,6 +7,7 @@
 #include "shared/elementary.h"
 #include "math/accumulate.cl"
 #include "math/sobol.cl"
+#include "math/strata.cl"
 #include "brdf/brdf.h"
 #include "generated/brdf_all.inc"
 #include "brdf/dispatch.cl"
@@ -23,21 +24,24 @@
 // clang-format on
 
 /// Items first_item … first_item + items - 1 of the block of points first_point … first_point + points - 1 of every
-/// replicate; an item is (view, pixel, replicate, chunk of `chunk` points), chunk running fastest.
+/// replicate; an item is (view, pixel, replicate, part: every so many-th point, `chunk` in all), part running fastest.
 __kernel void clray_trace(const __global ClrayPass *pass, const __global ClrayView *views,
                           const __global ClrayConnection *connections, const __global ClrayNode *nodes,
                           const __global ClrayPrimitive *primitives, const __global f64 *shapes,
                           const __global ClrayInstance *instances, const __global ClrayMaterial *materials,
                           const __global f64 *tables, const __global u32 *directions, const __global ClrayDelay *delays,
-                          const __global u32 *cells, volatile __global i64 *sums, volatile __global i64 *wide, volatile __global u32 *hits,
+                          const __global ClrayStratum *strata, volatile __global i64 *sums, volatile __global i64 *wide, volatile __global u32 *hits,
                           volatile __global i64 *counters, u64 first_item, u32 items, u32 first_point, u32 points,
                           u32 chunk) {
   if (get_global_id(0) >= items) return;
   const Buffers g = {pass,   views,      connections, nodes, primitives, shapes, instances, materials,
-                     tables, directions, delays,      cells, sums,       wide,   hits,      counters};
+                     tables, directions, delays,      strata, sums,       wide,   hits,      counters};
   const u32 chunks = (points + chunk - 1u) / max(chunk, 1u);
   u64 item = first_item + get_global_id(0);
-  const u32 begin = (u32)(item % max(chunks, 1u)) * chunk;
+  u32 part = (u32)(item % max(chunks, 1u));
+  // Points whose indices differ in their high bits alone are neighbours in Sobol's first dimension, and so are those of
+  // items whose parts differ in their low bits: a work-item, and those beside it, meet the same strip of the beam.
+  if ((chunks & (chunks - 1u)) == 0u) part = chunks > 1u ? reverse_bits(part) >> (clz(chunks) + 1u) : 0u;
   item /= max(chunks, 1u);
   Tally tally;
   tally.replicate = (u32)(item % max(pass->replicates, 1u));
@@ -52,9 +56,8 @@ __kernel void clray_trace(const __global ClrayPass *pass, const __global ClrayVi
   tally.view = (u32)item;
   tally_clear(&tally);
   Sampler sampler = {pass->key0, pass->key1, pass->epoch, tally.replicate, tally.stream, 0u};
-  sampler_begin(&sampler);
-  const u32 end = min(begin + chunk, points);
-  for (u32 k = begin; k < end; ++k) {
+  sampler_begin(&sampler, directions, first_point + part);
+  for (u32 k = part; k < points; k += chunks) {
     sampler.index = first_point + k;
     trace_path(&g, &sampler, &tally);
   }

@@ -60,7 +60,7 @@ struct PassRunner::OnDevice {
     keep(plan.surfaces.tables);
     keep(sobol_directions_reversed());
     keep(plan.delay_rows);
-    keep(plan.cells);
+    keep(plan.strata);
     cl_uint index = 0;
     const auto set = [&](const cl::Buffer& buffer) { kernel.setArg(index++, buffer); };
     with_cl_errors(opened.info.name, [&] {
@@ -136,6 +136,7 @@ bool PassRunner::run(Sums* sums, std::uint64_t points, std::uint32_t epoch,
   const std::uint64_t begin = sums->points;
   const std::uint64_t bounces = static_cast<std::uint64_t>(plan_.max_bounces) + 1;
   std::uint64_t block = kMostContributions / (2 * bounces);  // a bounce enters a book at most twice
+  while ((block & (block - 1)) != 0) block &= block - 1;     // a power of two keeps neighbouring points together
   if (options_.slice_points != 0) block = std::min(block, options_.slice_points);
   std::uint64_t at = begin, undrained = 0;
   Sums before;  // a copy only where sums must be drained before the end: pictures' are large

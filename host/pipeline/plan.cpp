@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "clray/error.hpp"
+#include "pipeline/beam_strata.hpp"
 #include "pipeline/views.hpp"
 #include "scene/motion.hpp"
 #include "scene/tables.hpp"
@@ -44,6 +45,7 @@ class Planner {
     if (p_.scatter || !scene_.trace.specialise) p_.surfaces = build_surfaces(scene_, p_.lanes, true, p_.thermal);
     build_views(scene_, geometry_, &p_);
     windows();
+    stratify_beams(scene_, geometry_, &p_);
     scales();
     layout();
     specialise();
@@ -253,9 +255,9 @@ void Planner::specialise() {
          "no component is hinged; fixed transforms are done once on the host");
   decide("CLRAY_WIDE", p_.scatter || bistatic || !only_lambert, "second accumulator",
          "weights may exceed the bound of a first bounce", "weights of a Lambert surface are bounded");
-  p_.options.defines["CLRAY_CELLS"] = p_.cells.empty() ? "0" : "1";
-  if (!p_.cells.empty()) {
-    p_.kept.push_back("beam cells in order of delay: the Sobol sampler, stratified over the body's silhouette");
+  p_.options.defines["CLRAY_STRATA"] = p_.strata.empty() ? "0" : "1";
+  if (!p_.strata.empty()) {
+    p_.kept.push_back("strata of the beam: the Sobol sampler, spread over the body's silhouette, delays and peaks");
     p_.left_out.push_back("rays beside the body: cells of the beam's rectangle that nothing projects into");
   }
   decide("CLRAY_TRIANGLES", triangles, "triangle test", "a mesh is in the scene", "no mesh in the scene");

@@ -46,8 +46,8 @@ struct PassPlan {
   int scale_bits = 0;  ///< S of weights
   double path_low_m = 0.0, path_high_m = 0.0;
   double lever_m = 1.0;              ///< power of two that levers are divided by
-  std::vector<double> area_m2;       ///< that a view's rays cover: of its beam's cells, or of a pixel
-  std::vector<std::uint32_t> cells;  ///< of all views, see silhouette.hpp
+  std::vector<double> area_m2;       ///< that a ray of share 1 stands for, times the rays: of a beam, or of a pixel
+  std::vector<ClrayStratum> strata;  ///< of all views' beams, see beam_strata.hpp
 
   ClrayPass constants{};
   std::vector<ClrayView> views;

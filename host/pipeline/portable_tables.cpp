@@ -27,13 +27,20 @@ double surface_bound(const ClrayMaterial& material, const std::vector<double>& t
   return portable::brdf_bound(&material, tables.data(), cos_half_phase);
 }
 
+double surface_weight(const ClrayMaterial& material, const std::vector<double>& tables, vec3 n, vec3 wi, vec3 wo) {
+  const portable::BrdfAngles angles = portable::brdf_angles(n, wi, wo);
+  return portable::brdf_eval(&material, tables.data(), angles) * angles.mu_o;
+}
+
 double shape_support_of(int shape, const double* keys, const double direction[3]) {
   return portable::shape_support(static_cast<u32>(shape), keys, v3(direction[0], direction[1], direction[2]));
 }
 
-bool shape_hit_of(int shape, const double* keys, vec3 o, vec3 d, double* t) {
+bool shape_hit_of(int shape, const double* keys, vec3 o, vec3 d, double* t, vec3* normal) {
   u32 part;
-  return portable::shape_intersect(static_cast<u32>(shape), keys, o, d, HUGE_VAL, t, &part) != 0;
+  if (!portable::shape_intersect(static_cast<u32>(shape), keys, o, d, HUGE_VAL, t, &part)) return false;
+  *normal = portable::shape_surface(static_cast<u32>(shape), keys, o, d, *t, part).normal;
+  return true;
 }
 
 double shape_area_of(int shape, const double* keys) {

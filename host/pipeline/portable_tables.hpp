@@ -15,10 +15,13 @@ double surface_reflectance(const ClrayMaterial& material, const std::vector<doub
 /// Upper bound of f·mu_o over all normals at cos(phase/2); 1/sr.
 double surface_bound(const ClrayMaterial& material, const std::vector<double>& tables, double cos_half_phase);
 
+/// f·mu_o at a surface with unit normal n, of light from wi toward wo; 1/sr.
+double surface_weight(const ClrayMaterial& material, const std::vector<double>& tables, vec3 n, vec3 wi, vec3 wo);
+
 /// max over the shape of x·direction in its local frame, m. `keys`: the row's values in order.
 double shape_support_of(int shape, const double* keys, const double direction[3]);
-/// Nearest hit of the local ray o + t·d with t > 0: true and t.
-bool shape_hit_of(int shape, const double* keys, vec3 o, vec3 d, double* t);
+/// Nearest hit of the local ray o + t·d with t > 0: true, t and the outward unit normal.
+bool shape_hit_of(int shape, const double* keys, vec3 o, vec3 d, double* t, vec3* normal);
 /// Area of one side, m².
 double shape_area_of(int shape, const double* keys);
 /// CLRAY_SHAPE_CLOSED | CLRAY_SHAPE_CONVEX | CLRAY_SHAPE_PLANE

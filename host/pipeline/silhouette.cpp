@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cells of the beam (see silhouette.hpp): a conservative rasteriser with a depth buffer. Lengths in m, in the beam's
-// axes (u, v, toward the source).
+// A conservative rasteriser with a depth buffer (see silhouette.hpp).
 #include "pipeline/silhouette.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "pipeline/portable_tables.hpp"
 
@@ -14,33 +12,29 @@ namespace {
 
 constexpr std::uint64_t kMostTests = 1ull << 27;  // of a cell against a primitive: about a second
 constexpr int kDirections = 32;                   // half-planes that bound an analytic shape's silhouette
-constexpr double kMostSlots = 64.0;               // of a cell: costs at most 6 of the sums' 38 bits
-constexpr double kPathSteps = 1024.0;             // cells whose paths differ by less than 1/1024 are neighbours
 
-/// One primitive's corner in the beam's axes.
+/// A point in the beam's axes.
 struct Corner {
-  double u, v, w, path;
+  double u, v, w;
 };
 
 class Rasteriser {
  public:
   Rasteriser(const Geometry& geometry, const std::vector<RigidMotion>& motions, const BeamGrid& grid)
       : geometry_(geometry), motions_(motions), grid_(grid), n_(grid.cells) {
-    const std::size_t count = static_cast<std::size_t>(n_) * n_;
-    depth_.assign(count, -1e300);
-    path_.assign(count, 0.0);
-    state_.assign(count, 0);
+    cells_.resize(static_cast<std::size_t>(n_) * n_);
     cell_u_ = grid.size_u / n_;
     cell_v_ = grid.size_v / n_;
     // More than all rounding between here and the device's ray.
     margin_ = 1e-9 * (grid.size_u + grid.size_v) + 1e-14 * (std::fabs(grid.u0) + std::fabs(grid.v0) + geometry.radius);
   }
 
-  std::vector<std::uint32_t> cells() {
+  std::vector<BeamCell> cells() {
     for (std::size_t k = 0; k < geometry_.primitives.size(); ++k) {
       const ClrayPrimitive& primitive = geometry_.primitives[k];
       const double* data = geometry_.shapes.data() + primitive.data;
       const RigidMotion& motion = motions_[geometry_.part_of_component[primitive.component]];
+      primitive_ = static_cast<std::uint32_t>(k);
       if (static_cast<int>(primitive.shape) == geometry_.mesh_row) {
         triangle(corner(motion, data), corner(motion, data + 3), corner(motion, data + 6));
       } else {
@@ -48,20 +42,17 @@ class Rasteriser {
       }
       if (tests_ > kMostTests) return {};
     }
-    return slots();
+    return std::move(cells_);
   }
 
  private:
-  Corner beam(const vec3& x) const {
-    return {v3_dot(grid_.u, x), v3_dot(grid_.v, x), v3_dot(grid_.toward, x), -v3_dot(grid_.path, x)};
-  }
-
   /// A point of a part, in the beam's axes.
   Corner corner(const RigidMotion& motion, const double* x) const {
     const double p[3] = {x[0] - motion.translation[0], x[1] - motion.translation[1], x[2] - motion.translation[2]};
     const std::array<double, 9>& m = motion.rotation;
-    return beam(v3(m[0] * p[0] + m[3] * p[1] + m[6] * p[2], m[1] * p[0] + m[4] * p[1] + m[7] * p[2],
-                   m[2] * p[0] + m[5] * p[1] + m[8] * p[2]));
+    const vec3 body = v3(m[0] * p[0] + m[3] * p[1] + m[6] * p[2], m[1] * p[0] + m[4] * p[1] + m[7] * p[2],
+                         m[2] * p[0] + m[5] * p[1] + m[8] * p[2]);
+    return {v3_dot(grid_.u, body), v3_dot(grid_.v, body), v3_dot(grid_.toward, body)};
   }
 
   int column(double u) const { return clamp_cell((u - grid_.u0) / cell_u_); }
@@ -70,15 +61,24 @@ class Rasteriser {
     return static_cast<int>(std::clamp(std::floor(x), 0.0, static_cast<double>(n_ - 1)));
   }
 
-  void mark(std::size_t cell, bool centre, double depth, double path) {
-    const std::uint8_t state = centre ? 2 : 1;
-    if (state < state_[cell] || (state == state_[cell] && depth <= depth_[cell])) return;
-    state_[cell] = state;
-    depth_[cell] = depth;
-    path_[cell] = path;
+  /// Equally near surfaces go to the smaller canonical id, as hits do: no order of work matters.
+  void mark(std::size_t at, BeamCell::State state, double w, const vec3& normal) {
+    BeamCell& cell = cells_[at];
+    if (state < cell.state) return;
+    if (state == cell.state) {
+      if (w < cell.w) return;
+      if (w == cell.w && geometry_.primitives[primitive_].id > geometry_.primitives[cell.primitive].id) return;
+    }
+    cell.state = state;
+    cell.primitive = primitive_;
+    cell.w = w;
+    cell.back = normal.z < 0.0;
+    cell.normal = cell.back ? v3_neg(normal) : normal;
   }
 
   void triangle(const Corner& a, const Corner& b, const Corner& c) {
+    const vec3 normal = v3_cross(v3(b.u - a.u, b.v - a.v, b.w - a.w), v3(c.u - a.u, c.v - a.v, c.w - a.w));
+    if (v3_dot(normal, normal) == 0.0) return;  // without area: no ray can hit it
     const double low_u = std::min({a.u, b.u, c.u}) - margin_, high_u = std::max({a.u, b.u, c.u}) + margin_;
     const double low_v = std::min({a.v, b.v, c.v}) - margin_, high_v = std::max({a.v, b.v, c.v}) + margin_;
     const int i0 = column(low_u), i1 = column(high_u), j0 = row(low_v), j1 = row(high_v);
@@ -104,8 +104,7 @@ class Rasteriser {
       axis.high = high + slack;
       axis.half = 0.5 * (std::fabs(axis.x) * cell_u_ + std::fabs(axis.y) * cell_v_);
     }
-    const double area = (b.u - a.u) * (c.v - a.v) - (b.v - a.v) * (c.u - a.u);
-    const double depth = (a.w + b.w + c.w) / 3.0, path = (a.path + b.path + c.path) / 3.0;
+    const double w = (a.w + b.w + c.w) / 3.0;
     for (int j = j0; j <= j1; ++j) {
       for (int i = i0; i <= i1; ++i) {
         const double u = grid_.u0 + (i + 0.5) * cell_u_, v = grid_.v0 + (j + 0.5) * cell_v_;
@@ -118,12 +117,11 @@ class Rasteriser {
         const std::size_t cell = static_cast<std::size_t>(j) * n_ + i;
         const double x = (u - a.u) * (c.v - a.v) - (v - a.v) * (c.u - a.u);
         const double y = (b.u - a.u) * (v - a.v) - (b.v - a.v) * (u - a.u);
-        const double s = x / area, t = y / area;
-        if (area != 0.0 && s >= 0.0 && t >= 0.0 && s + t <= 1.0) {
-          mark(cell, true, a.w + s * (b.w - a.w) + t * (c.w - a.w),
-               a.path + s * (b.path - a.path) + t * (c.path - a.path));
+        const double s = x / normal.z, t = y / normal.z;
+        if (normal.z != 0.0 && s >= 0.0 && t >= 0.0 && s + t <= 1.0) {
+          mark(cell, BeamCell::centred, a.w + s * (b.w - a.w) + t * (c.w - a.w), normal);
         } else {
-          mark(cell, false, depth, path);
+          mark(cell, BeamCell::touched, w, normal);
         }
       }
     }
@@ -163,6 +161,7 @@ class Rasteriser {
     }
     tests_ += static_cast<std::uint64_t>(n_) * n_ * 4;
     const vec3 d = to_local(v3_neg(grid_.toward)), lu = to_local(grid_.u), lv = to_local(grid_.v);
+    const double start = 4.0 * geometry_.radius / scale;
     for (std::uint32_t j = 0; j < n_; ++j) {
       for (std::uint32_t i = 0; i < n_; ++i) {
         const double u = grid_.u0 + (i + 0.5) * cell_u_, v = grid_.v0 + (j + 0.5) * cell_v_;
@@ -172,89 +171,39 @@ class Rasteriser {
           if (apart) break;
         }
         if (apart) continue;
-        const double start = 4.0 * geometry_.radius / scale;
         const vec3 o = v3_fma((u - origin.u) / scale, lu, v3_fma((v - origin.v) / scale, lv, v3_scale(-start, d)));
+        const std::size_t cell = static_cast<std::size_t>(j) * n_ + i;
         double t;
-        if (shape_hit_of(static_cast<int>(primitive.shape), data + CLRAY_SHAPE_KEYS, o, d, &t)) {
-          const double w = origin.w + scale * (start - t);
-          mark(static_cast<std::size_t>(j) * n_ + i, true, w, path_of(u, v, w));
+        vec3 normal;
+        if (shape_hit_of(static_cast<int>(primitive.shape), data + CLRAY_SHAPE_KEYS, o, d, &t, &normal)) {
+          mark(cell, BeamCell::centred, origin.w + scale * (start - t),
+               v3(v3_dot(normal, lu), v3_dot(normal, lv), -v3_dot(normal, d)));
         } else {
-          mark(static_cast<std::size_t>(j) * n_ + i, false, origin.w, path_of(u, v, origin.w));
+          mark(cell, BeamCell::touched, origin.w, v3(0.0, 0.0, 0.0));
         }
       }
     }
-  }
-
-  double path_of(double u, double v, double w) const {
-    return -(u * v3_dot(grid_.path, grid_.u) + v * v3_dot(grid_.path, grid_.v) + w * v3_dot(grid_.path, grid_.toward));
-  }
-
-  /// Place of a cell along Hilbert's curve, whose neighbours are neighbours in the grid.
-  std::uint32_t hilbert(std::uint32_t x, std::uint32_t y) const {
-    std::uint32_t place = 0;
-    for (std::uint32_t half = n_ / 2; half > 0; half /= 2) {
-      const std::uint32_t right = (x & half) != 0, top = (y & half) != 0;
-      place = place << 2 | ((3 * right) ^ top);
-      if (top == 0) {
-        if (right != 0) {
-          x = n_ - 1 - x;
-          y = n_ - 1 - y;
-        }
-        std::swap(x, y);
-      }
-    }
-    return place;
-  }
-
-  std::vector<std::uint32_t> slots() const {
-    struct Key {
-      std::int64_t step;
-      std::uint32_t place, cell;
-    };
-    std::vector<Key> keys;
-    const double step = 4.0 * geometry_.radius / kPathSteps;
-    for (std::uint32_t cell = 0; cell < state_.size(); ++cell) {
-      if (state_[cell] == 0) continue;
-      keys.push_back({static_cast<std::int64_t>(std::floor(path_[cell] / step)), hilbert(cell % n_, cell / n_), cell});
-    }
-    std::map<std::int64_t, double> cells_of;
-    for (const Key& key : keys) cells_of[key.step] += 1.0;
-    std::sort(keys.begin(), keys.end(),
-              [](const Key& a, const Key& b) { return a.step != b.step ? a.step < b.step : a.place < b.place; });
-    // Half of the slots go to all cells alike, half to all steps of path alike: rare delays get their share of rays.
-    const double mean = static_cast<double>(keys.size()) / static_cast<double>(cells_of.size());
-    std::vector<std::uint32_t> out;
-    for (const Key& key : keys) {
-      const double share = mean / cells_of[key.step];
-      const auto count = static_cast<std::uint32_t>(std::min(1.0 + std::floor(share), kMostSlots));
-      for (std::uint32_t k = 0; k < count; ++k) {
-        out.push_back(key.cell);
-        out.push_back(k << 16 | count);
-      }
-    }
-    return out;
   }
 
   const Geometry& geometry_;
   const std::vector<RigidMotion>& motions_;
   const BeamGrid& grid_;
-  std::uint32_t n_;
+  std::uint32_t n_, primitive_ = 0;
   double cell_u_ = 0.0, cell_v_ = 0.0, margin_ = 0.0;
   std::uint64_t tests_ = 0;
-  std::vector<double> depth_, path_;
-  std::vector<std::uint8_t> state_;  // 0 empty, 1 touched, 2 its centre covered
+  std::vector<BeamCell> cells_;
 };
 
 }  // namespace
 
 std::uint32_t grid_cells(std::size_t views) {
-  std::uint32_t cells = 512;
-  while (cells > 8 && static_cast<std::uint64_t>(views) * cells * cells > 1u << 18) cells /= 2;
+  std::uint32_t cells = 256;
+  while (cells > 8 && static_cast<std::uint64_t>(views) * cells * cells > 1u << 17) cells /= 2;
   return cells;
 }
 
-std::vector<std::uint32_t> silhouette_cells(const Geometry& geometry, const std::vector<RigidMotion>& motions,
-                                            const BeamGrid& grid) {
+std::vector<BeamCell> silhouette_cells(const Geometry& geometry, const std::vector<RigidMotion>& motions,
+                                       const BeamGrid& grid) {
   return Rasteriser(geometry, motions, grid).cells();
 }
 

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pipeline/silhouette.hpp"
 #include "shared/elementary.h"
 
 namespace clray {
@@ -27,14 +26,6 @@ void store(double* out, const vec3& v) {
   out[0] = v.x;
   out[1] = v.y;
   out[2] = v.z;
-}
-
-std::vector<RigidMotion> motions_of(const Scene& scene, const Geometry& geometry, const Orientation& orientation) {
-  std::vector<RigidMotion> motions;
-  for (const Part& part : geometry.parts)
-    motions.push_back(part_motion(scene, part, orientation.source,
-                                  orientation.observers.empty() ? orientation.source : orientation.observers[0]));
-  return motions;
 }
 
 double sine_of_degrees(double degrees) {
@@ -113,8 +104,8 @@ void add_connection(const Vec3& direction, double acceptance_rad, bool shadow, P
   plan->connection_rows.push_back(row);
 }
 
-void beam_rectangle(const Scene& scene, const Geometry& geometry, const std::vector<RigidMotion>& motions,
-                    PassPlan* plan, ClrayView* view) {
+void beam_rectangle(const Geometry& geometry, const std::vector<RigidMotion>& motions, PassPlan* plan,
+                    ClrayView* view) {
   const vec3 s = v3(view->toward[0], view->toward[1], view->toward[2]);
   vec3 t, b;
   v3_frame(s, &t, &b);
@@ -126,19 +117,7 @@ void beam_rectangle(const Scene& scene, const Geometry& geometry, const std::vec
   store(view->corner, v3_fma(u0, t, v3_fma(v0, b, v3_scale(start, s))));
   store(view->edge_u, v3_scale(u1 - u0, t));
   store(view->edge_v, v3_scale(v1 - v0, b));
-  double area = (u1 - u0) * (v1 - v0);
-  if (scene.trace.sobol && scene.trace.stratify && area > 0.0) {
-    const double* o = plan->connection_rows[plan->connection_rows.size() - plan->connections].direction;
-    const BeamGrid grid{t,  b,       s,       v3(s.x + o[0], s.y + o[1], s.z + o[2]), u0,
-                        v0, u1 - u0, v1 - v0, grid_cells(plan->orientations.size())};
-    const std::vector<std::uint32_t> cells = silhouette_cells(geometry, motions, grid);
-    view->grid = grid.cells;
-    view->first_cell = static_cast<std::uint32_t>(plan->cells.size() / 2);
-    view->cells = static_cast<std::uint32_t>(cells.size() / 2);
-    plan->cells.insert(plan->cells.end(), cells.begin(), cells.end());
-    if (!cells.empty()) area *= static_cast<double>(cells.size() / 2) / (static_cast<double>(grid.cells) * grid.cells);
-  }
-  plan->area_m2.push_back(area);
+  plan->area_m2.push_back((u1 - u0) * (v1 - v0));
 }
 
 /// Image axes: up is the space frame's +y as seen in the body frame (or -z/+z where the view is along it).
@@ -197,6 +176,14 @@ Vec3 direction_from_degrees(double azimuth_deg, double elevation_deg) {
   return {c * cosine(azimuth), c * sine_of_degrees(azimuth), sine_of_degrees(elevation_deg)};
 }
 
+std::vector<RigidMotion> motions_of(const Scene& scene, const Geometry& geometry, const Orientation& orientation) {
+  std::vector<RigidMotion> motions;
+  for (const Part& part : geometry.parts)
+    motions.push_back(part_motion(scene, part, orientation.source,
+                                  orientation.observers.empty() ? orientation.source : orientation.observers[0]));
+  return motions;
+}
+
 void build_views(const Scene& scene, const Geometry& geometry, PassPlan* plan) {
   plan->nodes = geometry.nodes;
   const bool instanced =
@@ -221,7 +208,7 @@ void build_views(const Scene& scene, const Geometry& geometry, PassPlan* plan) {
         const bool shadow = !(orientation.observers[c] == orientation.source) || scene.trace.force_bistatic;
         add_connection(orientation.observers[c], observer.acceptance_rad, shadow, plan);
       }
-      beam_rectangle(scene, geometry, motions, plan, &view);
+      beam_rectangle(geometry, motions, plan, &view);
     }
     plan->views.push_back(view);
     all_motions.push_back(motions);

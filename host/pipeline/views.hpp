@@ -10,6 +10,9 @@ namespace clray {
 /// Fills views, connections, instances, nodes, areas and (for pictures) the image axes of a pass.
 void build_views(const Scene& scene, const Geometry& geometry, PassPlan* plan);
 
+/// Where the parts of the body stand in an orientation.
+std::vector<RigidMotion> motions_of(const Scene& scene, const Geometry& geometry, const Orientation& orientation);
+
 /// Least and greatest path length (relative to the reference point) of one bounce in view v toward connection c.
 void path_extent(const Scene& scene, const Geometry& geometry, const PassPlan& plan, std::size_t v, std::uint32_t c,
                  double* low, double* high);

@@ -24,7 +24,7 @@ struct TraceOptions {
   std::uint64_t seed = 1;
   int replicates = 16;          ///< independent replicates (the error's degrees of freedom + 1), 2 … 64
   bool sobol = true;            ///< false: plain random sampling
-  bool stratify = true;         ///< with sobol: sample what the body can be in, in order of delay
+  bool stratify = true;         ///< with sobol: spread points over silhouette, delays and peaks (docs/sampling.md)
   bool specialise = true;       ///< false: the generic program (same digest, slower)
   bool force_bistatic = false;  ///< shadow rays even where the observer is at the source
   bool allow_failures = false;  ///< report non-finite weights and overflows instead of throwing

@@ -19,8 +19,8 @@ typedef struct Sampler {
   u32 stream;  // 0 for a beam, 1 + pixel for pixels
   u32 index;
   u32 words[4];  // of group 0, which all points of a Sobol stream share
-  u32 sixteen;   // index/16 that `base` is for
-  u32 base[2];   // dimensions 0 and 1 of the first point of those sixteen
+  u32 origin;    // a point
+  u32 base[2];   // and its dimensions 0 and 1, unscrambled, bits reversed
 } Sampler;
 
 /// Four seeds (or random words) of dimensions 4·group-2 … 4·group+1.
@@ -51,8 +51,10 @@ static u32 scramble_reversed(u32 x, u32 seed) {
 static u32 sobol_reversed(const __global u32 *directions, u32 dimension, u32 index) {
   const __global u32 *column = directions + 32u * dimension;
   u32 x = 0;
-  for (; index != 0; index >>= 1, ++column) {
-    if (index & 1u) x ^= *column;
+  while (index != 0u) {
+    const u32 bit = 31u - clz(index);
+    x ^= column[bit];
+    index ^= 1u << bit;
   }
   return x;
 }
@@ -76,21 +78,20 @@ static void sampler_draw(const Sampler *s, const __global u32 *directions, u32 g
   for (u32 k = 0; k < count; ++k) out[k] = unit_from_bits(words[skip + k]);
 }
 
-/// Before a sampler's first point.
-static void sampler_begin(Sampler *s) {
-  s->sixteen = 0xffffffffu;
+/// Before a sampler's first point, `origin`. Points whose indices differ from it in few bits cost least.
+static void sampler_begin(Sampler *s, const __global u32 *directions, u32 origin) {
+  s->index = s->origin = origin;
   sampler_words(s, 0u, 0xffffffffu, s->words);
+#if CLRAY_SOBOL
+  for (u32 k = 0; k < 2u; ++k) s->base[k] = sobol_reversed(directions, k, origin);
+#endif
 }
 
-/// Dimensions 0 and 1 of the current point: as sampler_draw, with what neighbouring points share kept.
+/// Dimensions 0 and 1 of the current point: as sampler_draw, with what it shares with the origin kept.
 static void sampler_draw_first(Sampler *s, const __global u32 *directions, f64 *out) {
 #if CLRAY_SOBOL
-  if (s->sixteen != s->index >> 4) {
-    s->sixteen = s->index >> 4;
-    for (u32 k = 0; k < 2u; ++k) s->base[k] = sobol_reversed(directions, k, s->index & ~15u);
-  }
   for (u32 k = 0; k < 2u; ++k) {
-    const u32 x = s->base[k] ^ sobol_reversed(directions, k, s->index & 15u);
+    const u32 x = s->base[k] ^ sobol_reversed(directions, k, s->index ^ s->origin);
     out[k] = unit_from_bits(scramble_reversed(x, s->words[2u + k]));
   }
 #else

@@ -65,10 +65,29 @@ typedef struct ClrayView {
   f64 box_scale;
   u32 root;               // of the top-level BVH (or of the only one)
   u32 first_instance;
-  u32 first_cell, cells;  // slots of the beam's rectangle that the body can be in; 0: all of it
+  u32 first_stratum, strips;  // strata of the beam; 0: its rectangle is sampled evenly
   u32 grid;               // cells along each edge of the rectangle
   u32 padding;
+  f64 share_scale;        // share of a ray = 65536·(area of its slot over a cell's)/(widths of strip and slot)·this
 } ClrayView;
+
+/// One of several to choose from by a uniform number: a view's strips, then the slots of a strip (host/pipeline/
+/// beam_strata.hpp). It stands for the 32-bit numbers after its forerunner's `last` up to its own.
+typedef struct ClrayStratum {
+  u32 last;
+  u32 guide;  // of the k-th of n: the first stratum that may hold numbers from k/n on
+  u32 a, b;   // strip: its first slot and their number; slot: CLRAY_SLOT_* and the part of its cell
+} ClrayStratum;
+// A slot's a: row·grid + column of its cell, which way path lengthens there (the lesser over the greater of its slopes
+// along u and v; where they fall; which is greater). b: shares of the cell's area, in 1/65536, at the slot's low (bits 0-15)
+// and high end (bits 16-31, plus one), along that way.
+#define CLRAY_SLOT_CELL 0x3ffffu
+#define CLRAY_SLOT_STEEPNESS_SHIFT 18
+#define CLRAY_SLOT_STEEPNESS 512  // of 1, in 10 bits
+#define CLRAY_SLOT_REVERSE (1u << 28)
+#define CLRAY_SLOT_FLIP_U (1u << 29)
+#define CLRAY_SLOT_FLIP_V (1u << 30)
+#define CLRAY_SLOT_SWAP (1u << 31)
 
 /// One direction to which hits are connected in one view: an observer for a beam, the source for pixels.
 typedef struct ClrayConnection {
@@ -136,7 +155,7 @@ typedef struct ClrayPass {
 
 // Sizes, asserted in C++ here and on the device by the start-up self-test.
 #define CLRAY_SIZES(X) \
-  X(ClrayMaterial, 120) X(ClrayPrimitive, 24) X(ClrayNode, 112) X(ClrayInstance, 136) X(ClrayView, 152) \
+  X(ClrayMaterial, 120) X(ClrayPrimitive, 24) X(ClrayNode, 112) X(ClrayInstance, 136) X(ClrayView, 160) X(ClrayStratum, 16) \
   X(ClrayConnection, 48) X(ClrayDelay, 40) X(ClrayPass, 136)
 #ifdef __cplusplus
 #define CLRAY_ASSERT_SIZE(type, size) static_assert(sizeof(type) == size, "abi.h: " #type);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stage 1, generate: a primary ray of a view. A beam's rays fill the cells of the rectangle that bounds the body across
-// the direction to the source (see host/pipeline/silhouette.hpp), all cells alike; a picture's fill their pixel.
+// Stage 1, generate: a primary ray of a view. A beam's rays fill the rectangle that bounds the body across the direction
+// to the source, or the strata of it that the body can be in (host/pipeline/beam_strata.hpp); a picture's fill their pixel.
 #ifndef CLRAY_GENERATE_CL
 #define CLRAY_GENERATE_CL
 
@@ -15,19 +15,8 @@ static Ray stage_generate(const Buffers *g, Sampler *sampler, const Tally *tally
   u[1] = ((f64)(pixel / max(width, 1u)) + u[1]) / (f64)g->pass->height;
 #endif
   f64 share = 1.0;
-#if CLRAY_CELLS
-  if (view->cells != 0u) {
-    // Consecutive slots are neighbours in path length: strata of u[0] are strata of the delay histogram. A slot is a
-    // column of a cell; its share of the beam is 1/parts of the cell's.
-    const f64 x = u[0] * (f64)view->cells;
-    const u32 slot = min((u32)x, view->cells - 1u);
-    const __global u32 *entry = g->cells + 2u * (view->first_cell + slot);
-    const u32 cell = entry[0], part = entry[1] >> 16, parts = entry[1] & 0xffffu;
-    const u32 grid = view->grid;
-    u[0] = ((f64)(cell % max(grid, 1u)) + ((f64)part + (x - (f64)slot)) / (f64)parts) / (f64)grid;
-    u[1] = ((f64)(cell / max(grid, 1u)) + u[1]) / (f64)grid;
-    share = 1.0 / (f64)parts;
-  }
+#if CLRAY_STRATA
+  if (view->strips != 0u) share = strata_place(g->strata, view, u);
 #endif
   Ray ray;
   ray.o = v3_fma(u[0], v3_load(view->edge_u), v3_fma(u[1], v3_load(view->edge_v), v3_load(view->corner)));

@@ -17,7 +17,7 @@ typedef struct Buffers {
   const __global f64 *tables;
   const __global u32 *directions;               // Sobol, bits reversed
   const __global ClrayDelay *delays;            // [detector][connection]
-  const __global u32 *cells;                    // slots of the views' beams (host/pipeline/silhouette.hpp)
+  const __global ClrayStratum *strata;          // of the views' beams
   volatile __global i64 *sums;
   volatile __global i64 *wide;
   volatile __global u32 *hits;

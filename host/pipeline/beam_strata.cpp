@@ -1,0 +1,352 @@
+// SPDX-License-Identifier: Apache-2.0
+// See beam_strata.hpp. Lengths in m, in the beam's axes (u, v, toward the source); path lengths relative to the origin.
+#include "pipeline/beam_strata.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "pipeline/portable_tables.hpp"
+#include "pipeline/silhouette.hpp"
+#include "pipeline/views.hpp"
+
+namespace clray {
+namespace {
+
+constexpr double kMostStrips = 1024.0;  // over the body, of path length
+constexpr int kMostCuts = 32;           // parts of a cell
+constexpr double kMostSlots = 1 << 20;  // of all views, about
+constexpr std::size_t kMostLanes = 16;  // whose weights are looked at
+// Shares of the probability that go by area and by path length; the rest goes by what the surface sends.
+constexpr std::size_t kStretch = 4;  // intervals of path before and after one that are looked at
+constexpr double kByArea = 0.25;
+constexpr double kByPath = 0.375;
+
+/// A part of a cell: the area between two lines across its direction of steepest path.
+struct Slot {
+  std::int64_t path;       // the interval of path length that it lies in
+  std::uint32_t column;    // 0: its strip is all of that; else 1 + the column of cells that its strip is
+  std::uint32_t place;     // CLRAY_SLOT_*
+  std::uint32_t from, to;  // shares of the cell's area below its two lines, in 1/65536
+  double weight;           // of the surface there
+  double probability;
+};
+
+/// Share of the unit square with x + r·y <= s, 0 <= r <= 1.
+double share_below(double s, double r) {
+  if (s <= 0.0) return 0.0;
+  if (s >= 1.0 + r) return 1.0;
+  if (s < r) return s * s / (2.0 * r);
+  if (s <= 1.0) return s - 0.5 * r;
+  return 1.0 - (1.0 + r - s) * (1.0 + r - s) / (2.0 * r);
+}
+
+/// Cells of an n × n grid in order of direction from its middle, nearest the middle first where directions are equal.
+std::vector<std::uint32_t> cells_by_direction(std::uint32_t n) {
+  struct Key {
+    double turn, size;
+    std::uint32_t cell;
+  };
+  std::vector<Key> keys;
+  for (std::uint32_t j = 0; j < n; ++j) {
+    for (std::uint32_t i = 0; i < n; ++i) {
+      const double x = 2.0 * i + 1.0 - n, y = 2.0 * j + 1.0 - n;  // odd: never the middle itself
+      const double slope = y / (std::fabs(x) + std::fabs(y));
+      keys.push_back({x > 0.0 ? slope : 2.0 - slope, std::fabs(x) + std::fabs(y), j * n + i});
+    }
+  }
+  std::sort(keys.begin(), keys.end(),
+            [](const Key& a, const Key& b) { return a.turn != b.turn ? a.turn < b.turn : a.size < b.size; });
+  std::vector<std::uint32_t> order;
+  for (const Key& key : keys) order.push_back(key.cell);
+  return order;
+}
+
+/// The strata of one view.
+class Stratifier {
+ public:
+  Stratifier(const Geometry& geometry, const PassPlan& plan, std::size_t v, const BeamGrid& grid)
+      : geometry_(geometry), plan_(plan), v_(v), grid_(grid), n_(grid.cells) {}
+
+  /// Appends to *strata; returns false where there is nothing to stratify.
+  bool run(const std::vector<BeamCell>& cells, const std::vector<std::uint32_t>& order, const Vec3& reference,
+           std::vector<ClrayStratum>* strata, ClrayView* view, double* area_m2) {
+    cells_ = &cells;
+    cell_u_ = grid_.size_u / n_;
+    cell_v_ = grid_.size_v / n_;
+    plan_weights();
+    by_path_ = !plan_.delays.empty();
+    if (by_path_) plan_strips(reference);
+    for (const std::uint32_t cell : order) {
+      if (cells[cell].state == BeamCell::empty) continue;
+      by_path_ ? cut(cell) : whole(cell);
+    }
+    if (slots_.empty()) return false;
+    probabilities();
+    write(strata, view, area_m2);
+    return true;
+  }
+
+ private:
+  vec3 to_beam(const double* x) const {
+    const vec3 body = v3_load(x);
+    return v3(v3_dot(body, grid_.u), v3_dot(body, grid_.v), v3_dot(body, grid_.toward));
+  }
+
+  /// What each cell sends to the observers, as a share of all; the mean over observers and (some) lanes.
+  void plan_weights() {
+    weights_.assign(cells_->size(), 0.0);
+    if (!plan_.connect) return;
+    const std::size_t lanes = plan_.lanes.size(), step = (lanes + kMostLanes - 1) / kMostLanes;
+    std::vector<double> found(cells_->size());
+    for (std::uint32_t c = 0; c < plan_.connections; ++c) {
+      const vec3 o = to_beam(plan_.connection_rows[v_ * plan_.connections + c].direction);
+      for (std::size_t lane = 0; lane < lanes; lane += step) {
+        double sum = 0.0;
+        for (std::size_t k = 0; k < found.size(); ++k) sum += found[k] = weight_of((*cells_)[k], lane, o);
+        for (std::size_t k = 0; k < found.size() && sum > 0.0; ++k) weights_[k] += found[k] / sum;
+      }
+    }
+  }
+
+  double weight_of(const BeamCell& cell, std::size_t lane, const vec3& o) const {
+    if (cell.state == BeamCell::empty || !(cell.normal.z > 0.0)) return 0.0;
+    const ClrayPrimitive& primitive = geometry_.primitives[cell.primitive];
+    const ClrayMaterial& material = plan_.surfaces.materials[lane * plan_.surfaces.columns + primitive.material];
+    if (cell.back && !(material.flags & CLRAY_MATERIAL_TWO_SIDED)) return 0.0;
+    const vec3 n = v3_unit(cell.normal);
+    if (!(v3_dot(n, o) > 0.0)) return 0.0;
+    return surface_weight(material, plan_.surfaces.tables, n, v3(0.0, 0.0, 1.0), o);
+  }
+
+  /// Strips between edges of the first histogram's bins: several bins or a whole part of one, 256 … 1024 over the body.
+  void plan_strips(const Vec3& reference) {
+    const double* o = plan_.connection_rows[v_ * plan_.connections].direction;
+    way_ = to_beam(o);
+    way_.z += 1.0;
+    const DelayPlan& delay = plan_.delays.front();
+    first_ = delay.first_m[0] - v3_dot(way_, to_beam(&reference[0]));
+    width_ = delay.bin_m[0];
+    const double extent = plan_.path_high_m - plan_.path_low_m;
+    while (extent > kMostStrips * width_) width_ *= 2.0;
+    while (extent < 0.25 * kMostStrips * width_) width_ *= 0.5;
+    const double cells = static_cast<double>(plan_.views.size() * cells_->size());
+    lowest_ = static_cast<std::int64_t>(std::floor((plan_.path_low_m - delay.first_m[0]) / width_));
+    highest_ = static_cast<std::int64_t>(std::floor((plan_.path_high_m - delay.first_m[0]) / width_));
+    cuts_ = std::clamp(static_cast<int>(8.0 * kMostSlots / cells), 1, kMostCuts);  // few cells need so many
+  }
+
+  /// A cell cut where its surface crosses from one strip to the next.
+  void cut(std::uint32_t at) {
+    const BeamCell& cell = (*cells_)[at];
+    const std::uint32_t i = at % n_, j = at / n_;
+    const double u = grid_.u0 + (i + 0.5) * cell_u_, v = grid_.v0 + (j + 0.5) * cell_v_;
+    // Along a surface with normal n, w falls by n.x/n.z per unit of u.
+    const double nz = std::max(cell.normal.z, std::max(1e-6 * v3_length(cell.normal), 1e-300));
+    const double gu = -(way_.x - way_.z * cell.normal.x / nz) * cell_u_;
+    const double gv = -(way_.y - way_.z * cell.normal.y / nz) * cell_v_;
+    const bool swap = std::fabs(gv) > std::fabs(gu);
+    const double high = swap ? std::fabs(gv) : std::fabs(gu), low = swap ? std::fabs(gu) : std::fabs(gv);
+    const auto steps =
+        static_cast<std::uint32_t>(high > 0.0 ? std::floor(low / high * CLRAY_SLOT_STEEPNESS + 0.5) : 0.0);
+    const double r = steps / static_cast<double>(CLRAY_SLOT_STEEPNESS);
+    // Within a cell, too, slots run round the beam's middle.
+    const double x = 2.0 * i + 1.0 - n_, y = 2.0 * j + 1.0 - n_;
+    const double along_u = swap ? (gu < 0.0 ? -1.0 : 1.0) : (gu < 0.0 ? r : -r);
+    const double along_v = swap ? (gv < 0.0 ? r : -r) : (gv < 0.0 ? -1.0 : 1.0);
+    const bool reverse = along_v * x - along_u * y < 0.0;
+    const std::uint32_t place = (reverse ? CLRAY_SLOT_REVERSE : 0u) | at | steps << CLRAY_SLOT_STEEPNESS_SHIFT |
+                                (gu < 0.0 ? CLRAY_SLOT_FLIP_U : 0u) | (gv < 0.0 ? CLRAY_SLOT_FLIP_V : 0u) |
+                                (swap ? CLRAY_SLOT_SWAP : 0u);
+    const double middle = -(way_.x * u + way_.y * v + way_.z * cell.w);
+    const double start = middle - 0.5 * high * (1.0 + r), span = high * (1.0 + r);
+    const std::int64_t k0 = interval_of(start), k1 = interval_of(start + span);
+    if (span * n_ < width_) {  // face-on: strata of path would tell nothing apart, columns do
+      add(interval_of(middle), i + 1, at | (x < 0.0 ? CLRAY_SLOT_REVERSE : 0u), 0.0, 1.0, weights_[at]);
+      return;
+    }
+    if (k1 - k0 >= cuts_) {  // too steep for its strips: even parts
+      for (int k = 0; k < cuts_; ++k)
+        add(interval_of(start + span * (k + 0.5) / cuts_), 0, place, share_below((1.0 + r) * k / cuts_, r),
+            share_below((1.0 + r) * (k + 1.0) / cuts_, r), weights_[at]);
+      return;
+    }
+    for (std::int64_t k = k0; k <= k1; ++k) {
+      const double from = k == k0 ? 0.0 : share_below((first_ + static_cast<double>(k) * width_ - start) / high, r);
+      const double to = k == k1 ? 1.0 : share_below((first_ + static_cast<double>(k + 1) * width_ - start) / high, r);
+      add(k, 0, place, from, to, weights_[at]);
+    }
+  }
+
+  /// Of a path; of one that a steep cell's plane has beyond the body, the last that the body has.
+  std::int64_t interval_of(double path) const {
+    const double k = std::floor((path - first_) / width_);
+    return static_cast<std::int64_t>(std::clamp(k, static_cast<double>(lowest_), static_cast<double>(highest_)));
+  }
+
+  void whole(std::uint32_t at) { add(0, at % n_ + 1, at, 0.0, 1.0, weights_[at]); }
+
+  void add(std::int64_t path, std::uint32_t column, std::uint32_t place, double from, double to, double weight) {
+    const auto a = static_cast<std::uint32_t>(std::floor(from * 65536.0 + 0.5));
+    const auto b = static_cast<std::uint32_t>(std::floor(to * 65536.0 + 0.5));
+    if (a >= b) return;
+    slots_.push_back({path, column, place, a, b, weight, 0.0});
+  }
+
+  std::size_t interval(const Slot& slot) const { return static_cast<std::size_t>(slot.path - lowest_); }
+  std::size_t strip(const Slot& slot) const { return interval(slot) * (n_ + 1) + slot.column; }
+
+  void probabilities() {
+    std::vector<double> area(static_cast<std::size_t>(highest_ - lowest_ + 1), 0.0);
+    double all = 0.0, weight = 0.0;
+    for (const Slot& slot : slots_) {
+      const double size = slot.to - slot.from;
+      area[interval(slot)] += size;
+      all += size;
+      weight += slot.weight * size;
+    }
+    // Equal shares for stretches of path, less where hardly anything is. Never for a sliver of an interval beside full
+    // ones: a rare ray of another weight would make rare totals that replicates seldom see.
+    double filled = 0.0, shares = 0.0;
+    for (const double a : area) filled += a > 0.0 ? 1.0 : 0.0;
+    const double little = all / (16.0 * filled);
+    std::vector<double> about(area.size());
+    for (std::size_t k = 0; k < area.size(); ++k) {
+      const std::size_t first = k < kStretch ? 0 : k - kStretch, last = std::min(k + kStretch, area.size() - 1);
+      double sum = 0.0;
+      for (std::size_t m = first; m <= last; ++m) sum += area[m];
+      about[k] = sum / static_cast<double>(last - first + 1) + little;
+      shares += area[k] / about[k];
+    }
+    const double by_path = by_path_ ? kByPath : 0.0;
+    const double by_weight = weight > 0.0 ? 1.0 - kByArea - kByPath : 0.0;
+    const double by_area = 1.0 - by_path - by_weight;
+    for (Slot& slot : slots_) {
+      const double size = slot.to - slot.from;
+      slot.probability = by_area * size / all + by_path * size / (about[interval(slot)] * shares);
+      if (weight > 0.0) slot.probability += by_weight * slot.weight * size / weight;
+    }
+  }
+
+  /// Ends of consecutive integer intervals that fill [0, 2^32) in proportion to `probabilities`, each at least 1 long.
+  static std::vector<std::uint32_t> intervals(const std::vector<double>& probabilities) {
+    double sum = 0.0;
+    for (const double p : probabilities) sum += p;
+    const double room = 4294967296.0 - static_cast<double>(probabilities.size());
+    std::vector<std::uint32_t> last;
+    double so_far = 0.0;
+    for (const double p : probabilities) {
+      so_far += p;
+      const double end = std::floor(std::min(so_far / sum, 1.0) * room) + static_cast<double>(last.size() + 1);
+      last.push_back(static_cast<std::uint32_t>(end - 1.0));
+    }
+    last.back() = 0xffffffffu;
+    return last;
+  }
+
+  /// The choice among `last.size()` strata, with a guide to where each part of [0, 2^32) begins.
+  static void append(const std::vector<std::uint32_t>& last, std::vector<ClrayStratum>* strata) {
+    const auto count = static_cast<double>(last.size());
+    std::uint32_t k = 0;
+    for (std::size_t g = 0; g < last.size(); ++g) {
+      while (last[k] + 1.0 < static_cast<double>(g) / count * 4294967296.0 - 1.0) ++k;
+      strata->push_back({last[g], k, 0u, 0u});
+    }
+  }
+
+  /// Slots in order of their strips, each strip's in the order in which they came; where each strip starts, and an end.
+  std::vector<std::size_t> sort_by_strip(std::vector<Slot>* sorted) const {
+    std::vector<std::size_t> next(static_cast<std::size_t>(highest_ - lowest_ + 1) * (n_ + 1) + 1, 0), starts;
+    for (const Slot& slot : slots_) ++next[strip(slot) + 1];
+    for (std::size_t s = 0; s + 1 < next.size(); ++s) {
+      if (next[s + 1] != 0) starts.push_back(next[s]);
+      next[s + 1] += next[s];
+    }
+    starts.push_back(slots_.size());
+    sorted->resize(slots_.size());
+    for (const Slot& slot : slots_) (*sorted)[next[strip(slot)]++] = slot;
+    return starts;
+  }
+
+  void write(std::vector<ClrayStratum>* strata, ClrayView* view, double* area_m2) const {
+    std::vector<Slot> slots;
+    const std::vector<std::size_t> starts = sort_by_strip(&slots);
+    const std::size_t strips = starts.size() - 1;
+    std::vector<double> each, of_strip(strips, 0.0);
+    for (std::size_t s = 0; s < strips; ++s) {
+      for (std::size_t k = starts[s]; k < starts[s + 1]; ++k) of_strip[s] += slots[k].probability;
+    }
+    const std::vector<std::uint32_t> strip_last = intervals(of_strip);
+    view->first_stratum = static_cast<std::uint32_t>(strata->size());
+    view->strips = static_cast<std::uint32_t>(strips);
+    view->grid = n_;
+    append(strip_last, strata);
+    double largest = 0.0;
+    for (std::size_t s = 0; s < strips; ++s) {
+      each.clear();
+      for (std::size_t k = starts[s]; k < starts[s + 1]; ++k) each.push_back(slots[k].probability);
+      const std::vector<std::uint32_t> last = intervals(each);
+      ClrayStratum& strip = (*strata)[view->first_stratum + s];
+      strip.a = static_cast<std::uint32_t>(strata->size());
+      strip.b = static_cast<std::uint32_t>(last.size());
+      const std::size_t first = strata->size();
+      append(last, strata);
+      for (std::size_t k = 0; k < last.size(); ++k) {
+        const Slot& slot = slots[starts[s] + k];
+        (*strata)[first + k].a = slot.place;
+        (*strata)[first + k].b = slot.from | (slot.to - 1u) << 16;
+        largest = std::max(largest, (slot.to - slot.from) / (size(strip_last, s) * size(last, k)));
+      }
+    }
+    int exponent;
+    std::frexp(largest, &exponent);
+    view->share_scale = std::ldexp(1.0, -exponent);  // shares stay below 1
+    *area_m2 = grid_.size_u * grid_.size_v / (65536.0 * n_ * n_) * std::ldexp(1.0, 64 + exponent);
+  }
+
+  static double size(const std::vector<std::uint32_t>& last, std::size_t k) {
+    return static_cast<double>(last[k]) - (k == 0 ? -1.0 : static_cast<double>(last[k - 1]));
+  }
+
+  const Geometry& geometry_;
+  const PassPlan& plan_;
+  std::size_t v_;
+  const BeamGrid& grid_;
+  std::uint32_t n_;
+  const std::vector<BeamCell>* cells_ = nullptr;
+  bool by_path_ = false;
+  int cuts_ = 1;
+  double cell_u_ = 0.0, cell_v_ = 0.0, first_ = 0.0, width_ = 1.0;
+  vec3 way_{};  // path length by way of x is -way·x
+  std::int64_t lowest_ = 0, highest_ = 0;
+  std::vector<Slot> slots_;
+  std::vector<double> weights_;
+};
+
+}  // namespace
+
+void stratify_beams(const Scene& scene, const Geometry& geometry, PassPlan* plan) {
+  if (plan->pixels || !scene.trace.sobol || !scene.trace.stratify) return;
+  const std::uint32_t n = grid_cells(plan->views.size());
+  std::vector<std::uint32_t> order;
+  if (plan->delays.empty()) {
+    for (std::uint32_t k = 0; k < n * n; ++k) order.push_back(k);
+  } else {
+    order = cells_by_direction(n);
+  }
+  for (std::size_t v = 0; v < plan->views.size(); ++v) {
+    ClrayView& view = plan->views[v];
+    const vec3 s = v3_load(view.toward), corner = v3_load(view.corner);
+    BeamGrid grid{{}, {}, s, 0.0, 0.0, v3_length(v3_load(view.edge_u)), v3_length(v3_load(view.edge_v)), n};
+    if (!(grid.size_u * grid.size_v > 0.0)) continue;
+    v3_frame(s, &grid.u, &grid.v);
+    grid.u0 = v3_dot(corner, grid.u);
+    grid.v0 = v3_dot(corner, grid.v);
+    const std::vector<BeamCell> cells =
+        silhouette_cells(geometry, motions_of(scene, geometry, plan->orientations[v]), grid);
+    if (cells.empty()) continue;
+    Stratifier(geometry, *plan, v, grid)
+        .run(cells, order, scene.reference_point, &plan->strata, &view, &plan->area_m2[v]);
+  }
+}
+
+}  // namespace clray
