@@ -5,7 +5,6 @@
 
 #include <chrono>
 #include <cstdio>
-#include <cstdlib>
 
 #include "bench.hpp"
 #include "clray/error.hpp"
@@ -16,12 +15,10 @@ namespace clray_bench {
 int stability(const Options& options) {
   std::vector<std::vector<std::string>> rows = {
       {"area", "case", "must hold", "measured", "tolerance and its origin", "seconds", ""}};
-  const char* asked = std::getenv("CLRAY_LONG_TESTS");
-  const bool long_tests = asked != nullptr && std::string(asked) == "1";
   int failed = 0, ran = 0;
   for (const clray_test::Case& c : clray_test::stability_cases()) {
     if ((options.quick && !c.quick) || !wanted(options, c.area + " " + c.name)) continue;
-    if (c.long_run && !long_tests && (options.only.empty() || !wanted(options, c.name))) continue;
+    if (c.long_run && !clray_test::long_tests() && (options.only.empty() || !wanted(options, c.name))) continue;
     const auto start = std::chrono::steady_clock::now();
     clray_test::Outcome outcome;
     try {

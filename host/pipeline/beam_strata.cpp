@@ -15,7 +15,7 @@ namespace {
 constexpr double kMostStrips = 1024.0;  // over the body, of path length
 constexpr int kMostCuts = 32;           // parts of a cell
 constexpr double kMostSlots = 1 << 20;  // of all views, about
-constexpr std::size_t kMostLanes = 16;  // whose weights are looked at
+constexpr std::size_t kMostLooks = 16;  // at weights: observers times lanes
 // Shares of the probability that go by area and by path length; the rest goes by what the surface sends.
 constexpr std::size_t kStretch = 4;  // intervals of path before and after one that are looked at
 constexpr double kByArea = 0.25;
@@ -96,7 +96,8 @@ class Stratifier {
   void plan_weights() {
     weights_.assign(cells_->size(), 0.0);
     if (!plan_.connect) return;
-    const std::size_t lanes = plan_.lanes.size(), step = (lanes + kMostLanes - 1) / kMostLanes;
+    const std::size_t lanes = plan_.lanes.size(), most = std::max<std::size_t>(kMostLooks / plan_.connections, 1);
+    const std::size_t step = (lanes + most - 1) / most;
     std::vector<double> found(cells_->size());
     for (std::uint32_t c = 0; c < plan_.connections; ++c) {
       const vec3 o = to_beam(plan_.connection_rows[v_ * plan_.connections + c].direction);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The stiff and extreme cases: each says what must hold, measures it, and says where its tolerance comes from.
 // clray-bench stability prints them all, those marked `long_run` where CLRAY_LONG_TESTS=1 or --only asks for them; the
-// tests run those marked `quick`.
+// tests run those marked `quick`, and with CLRAY_LONG_TESTS=1 (scripts/test --long) all.
 #pragma once
 
 #include <functional>
@@ -26,6 +26,9 @@ struct Case {
   std::function<Outcome()> run;
   bool long_run = false;  ///< takes many minutes: run only if it is asked for
 };
+
+/// Whether CLRAY_LONG_TESTS asks for what takes many minutes.
+bool long_tests();
 
 /// All cases, in the order in which they are reported.
 std::vector<Case> stability_cases();

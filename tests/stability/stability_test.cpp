@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The quick stiff and extreme cases as tests; clray-bench stability runs and tabulates all of them.
+// The quick stiff and extreme cases as tests, all with CLRAY_LONG_TESTS=1; clray-bench stability tabulates them.
 #include <doctest/doctest.h>
 
 #include "stability/case.hpp"
@@ -8,7 +8,7 @@ namespace {
 
 void run_area(const char* area) {
   for (const clray_test::Case& c : clray_test::stability_cases()) {
-    if (c.area != area || !c.quick) continue;
+    if (c.area != area || (!c.quick && !clray_test::long_tests())) continue;
     const clray_test::Outcome outcome = c.run();
     INFO(c.name, ": must hold: ", c.must_hold, "; measured: ", outcome.measured, "; tolerance: ", c.tolerance);
     CHECK(outcome.pass);
