@@ -17,8 +17,8 @@ namespace {
 const char* const kIntroduction =
     "Errors are relative to the closed form of the total. Samplers: `random`, plain random points on the beam's "
     "rectangle;\n"
-    "`sobol`, Owen-scrambled Sobol points on it; `stratified`, the default: such points on what the body can be in, in "
-    "order of delay.\n"
+    "`sobol`, Owen-scrambled Sobol points on it; `stratified`, the default: such points on strata of silhouette, delay "
+    "and peaks.\n"
     "Claimed: the standard error over the value; a fair claim has a median true error of 0.67 of it. Slope: of the "
     "root mean square (rms) true\nerror against rays, where that is below 30 %. Time to p %: tracing until "
     "90 % of seeds are that near (~: by the slope).\n"
@@ -27,8 +27,9 @@ const char* const kIntroduction =
     "the bit (checked at 2^14, 2^18 and 2^22 in the cases with bins). Of pressure the total is |C|, the error that "
     "along C. The bowl is a mesh whose\nfacets differ from the closed form by up to 0.02 %. The box-wing is "
     "meshes/box_wing.obj with its MTL; no part of it hides another in these views.\n"
-    "Of the sphere with n = 100000 some twenty rays in a million meet the peak: before they do, totals and claims are "
-    "those of the rest.\n";
+    "Of the sphere with n = 100000 some twenty rays in a million of the beam meet the peak: before random or plain "
+    "Sobol points "
+    "do, totals and claims are those of the rest.\n";
 
 Curve measure_and_print(const ErrorCase& c, const Sampler& sampler, int most, const Options& options,
                         clray::Device& device, std::string* runs) {
