@@ -233,7 +233,7 @@ void pulse_picture(Writer& writer, const DelayResult& delay, const std::string& 
             gnuplot_text("A = " + estimate(a, 1.0) + " m²/sr    σ = " + estimate(a, 4.0 * kPi) + " m²    mean " +
                          estimate(delay.mean_delay_s, unit.per_second) + " " + unit.name + "    rms width " +
                          estimate(delay.rms_width_s, unit.per_second) + " " + unit.name) +
-            " at screen 0.51, 0.925 center font ',12.5' textcolor '#333333'");
+            " at screen 0.51, 0.925 center font ',11.2' textcolor '#333333'");
   plot.line("set xlabel 'delay after a path by way of the reference point (" + std::string(unit.name) + ")'");
   plot.line("set ylabel 'A(t)  (m² sr⁻¹ " + std::string(unit.name) + "⁻¹)' offset -0.5,0");
   const double end = curve.start + static_cast<double>(curve.value.size()) * curve.width;
