@@ -16,8 +16,8 @@ constexpr double kMostStrips = 1024.0;  // over the body, of path length
 constexpr int kMostCuts = 32;           // parts of a cell
 constexpr double kMostSlots = 1 << 20;  // of all views, about
 constexpr std::size_t kMostLooks = 16;  // at weights: observers times lanes
+constexpr std::size_t kStretch = 4;     // intervals of path before and after one that share alike
 // Shares of the probability that go by area and by path length; the rest goes by what the surface sends.
-constexpr std::size_t kStretch = 4;  // intervals of path before and after one that are looked at
 constexpr double kByArea = 0.25;
 constexpr double kByPath = 0.375;
 
@@ -26,7 +26,7 @@ struct Slot {
   std::int64_t path;       // the interval of path length that it lies in
   std::uint32_t column;    // 0: its strip is all of that; else 1 + the column of cells that its strip is
   std::uint32_t place;     // CLRAY_SLOT_*
-  std::uint32_t from, to;  // shares of the cell's area below its two lines, in 1/65536
+  std::uint32_t from, to;  // shares of the cell's area below its two lines, in 1/CLRAY_SLOT_PARTS
   double weight;           // of the surface there
   double probability;
 };
@@ -67,8 +67,8 @@ class Stratifier {
   Stratifier(const Geometry& geometry, const PassPlan& plan, std::size_t v, const BeamGrid& grid)
       : geometry_(geometry), plan_(plan), v_(v), grid_(grid), n_(grid.cells) {}
 
-  /// Appends to *strata; returns false where there is nothing to stratify.
-  bool run(const std::vector<BeamCell>& cells, const std::vector<std::uint32_t>& order, const Vec3& reference,
+  /// Appends to *strata and tells the view; does neither where there is nothing to stratify.
+  void run(const std::vector<BeamCell>& cells, const std::vector<std::uint32_t>& order, const Vec3& reference,
            std::vector<ClrayStratum>* strata, ClrayView* view, double* area_m2) {
     cells_ = &cells;
     cell_u_ = grid_.size_u / n_;
@@ -80,10 +80,9 @@ class Stratifier {
       if (cells[cell].state == BeamCell::empty) continue;
       by_path_ ? cut(cell) : whole(cell);
     }
-    if (slots_.empty()) return false;
+    if (slots_.empty()) return;
     probabilities();
     write(strata, view, area_m2);
-    return true;
   }
 
  private:
@@ -187,8 +186,8 @@ class Stratifier {
   void whole(std::uint32_t at) { add(0, at % n_ + 1, at, 0.0, 1.0, weights_[at]); }
 
   void add(std::int64_t path, std::uint32_t column, std::uint32_t place, double from, double to, double weight) {
-    const auto a = static_cast<std::uint32_t>(std::floor(from * 65536.0 + 0.5));
-    const auto b = static_cast<std::uint32_t>(std::floor(to * 65536.0 + 0.5));
+    const auto a = static_cast<std::uint32_t>(std::floor(from * CLRAY_SLOT_PARTS + 0.5));
+    const auto b = static_cast<std::uint32_t>(std::floor(to * CLRAY_SLOT_PARTS + 0.5));
     if (a >= b) return;
     slots_.push_back({path, column, place, a, b, weight, 0.0});
   }
@@ -301,7 +300,7 @@ class Stratifier {
     int exponent;
     std::frexp(largest, &exponent);
     view->share_scale = std::ldexp(1.0, -exponent);  // shares stay below 1
-    *area_m2 = grid_.size_u * grid_.size_v / (65536.0 * n_ * n_) * std::ldexp(1.0, 64 + exponent);
+    *area_m2 = grid_.size_u * grid_.size_v / (1.0 * CLRAY_SLOT_PARTS * n_ * n_) * std::ldexp(1.0, 64 + exponent);
   }
 
   static double size(const std::vector<std::uint32_t>& last, std::size_t k) {

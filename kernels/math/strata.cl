@@ -42,10 +42,10 @@ static f64 strata_place(const __global ClrayStratum *strata, const __global Clra
   const u32 slot = strata_choose(strata, strata[strip].a, strata[strip].b, u[1], &along, &slot_size);
   const u32 a = strata[slot].a, b = strata[slot].b;
   const f64 from = (f64)(b & 0xffffu), to = (f64)(b >> 16) + 1.0;
-  const f64 r = (f64)((a >> CLRAY_SLOT_STEEPNESS_SHIFT) & 0x3ffu) / (f64)CLRAY_SLOT_STEEPNESS;
+  const f64 r = (f64)((a >> CLRAY_SLOT_STEEPNESS_SHIFT) & (2u * CLRAY_SLOT_STEEPNESS - 1u)) / (f64)CLRAY_SLOT_STEEPNESS;
   f64 x, y;
   if (a & CLRAY_SLOT_REVERSE) along = 1.0 - along;
-  strata_square(fma(across, to - from, from) / 65536.0, along, r, &x, &y);
+  strata_square(fma(across, to - from, from) / (f64)CLRAY_SLOT_PARTS, along, r, &x, &y);
   if (a & CLRAY_SLOT_SWAP) {
     const f64 t = x;
     x = y;

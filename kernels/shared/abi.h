@@ -68,7 +68,7 @@ typedef struct ClrayView {
   u32 first_stratum, strips;  // strata of the beam; 0: its rectangle is sampled evenly
   u32 grid;               // cells along each edge of the rectangle
   u32 padding;
-  f64 share_scale;        // share of a ray = 65536·(area of its slot over a cell's)/(widths of strip and slot)·this
+  f64 share_scale;        // share of a ray = CLRAY_SLOT_PARTS·(area of its slot over a cell's)/(widths of strip and slot)·this
 } ClrayView;
 
 /// One of several to choose from by a uniform number: a view's strips, then the slots of a strip (host/pipeline/
@@ -79,10 +79,11 @@ typedef struct ClrayStratum {
   u32 a, b;   // strip: its first slot and their number; slot: CLRAY_SLOT_* and the part of its cell
 } ClrayStratum;
 // A slot's a: row·grid + column of its cell, which way path lengthens there (the lesser over the greater of its slopes
-// along u and v; where they fall; which is greater). b: shares of the cell's area, in 1/65536, at the slot's low (bits 0-15)
+// along u and v; where they fall; which is greater). b: shares of the cell's area, in 1/CLRAY_SLOT_PARTS, at the slot's low (bits 0-15)
 // and high end (bits 16-31, plus one), along that way.
 #define CLRAY_SLOT_CELL 0x3ffffu
 #define CLRAY_SLOT_STEEPNESS_SHIFT 18
+#define CLRAY_SLOT_PARTS 65536
 #define CLRAY_SLOT_STEEPNESS 512  // of 1, in 10 bits
 #define CLRAY_SLOT_REVERSE (1u << 28)
 #define CLRAY_SLOT_FLIP_U (1u << 29)
