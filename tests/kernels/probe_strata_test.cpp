@@ -164,6 +164,7 @@ TEST_CASE("weighted, rays fill the beam evenly: the areas of rectangles in it") 
     const double edges[6] = {0.0, 0.1003, 0.3337, 0.5419, 0.8011, 1.0};
     const auto part = [&](double x) { return static_cast<int>(std::upper_bound(edges, edges + 6, x) - edges) - 1; };
     double got[25] = {}, squares[25] = {}, exact[25] = {};
+    double inside[16] = {}, inside_squares[16] = {};  // of cells, by sixteenths of a cell
     std::size_t outside = 0;
     for (std::size_t i = 0; i < count; ++i) {
       const double x = found[3 * i], y = found[3 * i + 1], share = found[3 * i + 2];
@@ -171,6 +172,11 @@ TEST_CASE("weighted, rays fill the beam evenly: the areas of rectangles in it") 
       const int k = 5 * std::min(part(y), 4) + std::min(part(x), 4);
       got[k] += share;
       squares[k] += share * share;
+      const auto quarter = [&](double z) {
+        return std::min(static_cast<int>(4.0 * (z * view.grid - std::floor(z * view.grid))), 3);
+      };
+      inside[4 * quarter(y) + quarter(x)] += share;
+      inside_squares[4 * quarter(y) + quarter(x)] += share * share;
     }
     const double cell = 1.0 / view.grid;
     for (u32 at = 0; at < filled.size(); ++at)
@@ -182,6 +188,12 @@ TEST_CASE("weighted, rays fill the beam evenly: the areas of rectangles in it") 
           if (w > 0.0 && h > 0.0) exact[5 * j + i] += w * h;
         }
     CHECK(outside == 0);
+    double all = 0.0;
+    for (double part : inside) all += part;
+    for (int k = 0; k < 16; ++k) {
+      CAPTURE(k);
+      CHECK(std::fabs(inside[k] - all / 16.0) <= 5.0 * std::sqrt(inside_squares[k]));  // as below
+    }
     const double* u = view.edge_u;
     const double* v = view.edge_v;
     const double rectangle =
