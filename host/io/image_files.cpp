@@ -123,6 +123,18 @@ std::string frame_stem(const std::string& stem, const Group& group, std::size_t 
   return stem + "-" + std::string(digits.size() < 4 ? 4 - digits.size() : 0, '0') + digits;
 }
 
+/// Where the picture lies, for a person: its pixels and its centre.
+std::string framing(const ImageResult& image) {
+  return "Pixel " + number(image.pixel_m) + " m; centre " + number(image.centre_right_m) + " m to the right and " +
+         number(image.centre_up_m) + " m above the body's reference point";
+}
+
+/// `value` with the leading zeros that make names in alphabetical order those of 0 … count − 1 in theirs.
+std::string padded(std::size_t value, std::size_t count) {
+  const std::string digits = std::to_string(value);
+  return std::string(std::to_string(count - 1).size() - digits.size(), '0') + digits;
+}
+
 void exr_file(Writer& writer, const ImageResult& image, const Linear& linear, const std::string& stem) {
   std::vector<Channel> channels{{"R", {}}, {"G", {}}, {"B", {}}, {"A", linear.coverage}};
   for (const auto& rgb : linear.rgb) {
@@ -131,8 +143,9 @@ void exr_file(Writer& writer, const ImageResult& image, const Linear& linear, co
   const std::size_t pixels = pixel_count(image);
   for (std::size_t b = 0; b < image.bands.size(); ++b) {
     const auto begin = image.radiance_per_sr.begin() + static_cast<std::ptrdiff_t>(b * pixels);
-    // A dot would nest layers, and OpenEXR limits names to 255 bytes: the number keeps them apart.
-    channels.push_back({"radiance." + std::to_string(b) + "_" + file_name_part(image.bands[b].name),
+    // A dot would nest layers, and OpenEXR limits names to 255 bytes: the number keeps them apart. OpenEXR sorts
+    // channels by name: padded numbers keep the bands in their order.
+    channels.push_back({"radiance." + padded(b, image.bands.size()) + "_" + file_name_part(image.bands[b].name),
                         std::vector<float>(begin, begin + static_cast<std::ptrdiff_t>(pixels))});
     std::replace(channels.back().name.begin() + 9, channels.back().name.end(), '.', '_');
   }
@@ -140,7 +153,8 @@ void exr_file(Writer& writer, const ImageResult& image, const Linear& linear, co
             "clray " CLRAY_VERSION ", scene " + writer.scene_name() + ", digest " + hex16(writer.result.digest) +
                 ". R, G, B: linear sRGB primaries, 1 = white Lambert plate square to the light, premultiplied by A = "
                 "coverage; "
-                "radiance.*: radiance per unit irradiance, 1/sr, per band");
+                "radiance.*: radiance per unit irradiance, 1/sr, per band. " +
+                framing(image));
 }
 
 void write_rgb(Writer& writer, const Group& group) {
@@ -155,7 +169,7 @@ void write_rgb(Writer& writer, const Group& group) {
     Linear linear = develop(*group[i], writer.scene.source, visible);
     exr_file(writer, *group[i], linear, frame_stem(stem, group, i));
     write_png(writer.folder.path(writer.add(frame_stem(stem, group, i), "png")), encode(linear, std::exp2(ev)),
-              description);
+              description + ". " + framing(*group[i]));
     if (group.size() > 1) frames.push_back(shrink(linear, 320));
   }
   if (!frames.empty()) {
@@ -192,8 +206,8 @@ FitsAxis wavelength_axis(const std::vector<Band>& bands) {
 void write_cube(Writer& writer, const Group& group, std::size_t i) {
   const ImageResult& image = *group[i];
   const std::size_t w = static_cast<std::size_t>(image.width), h = static_cast<std::size_t>(image.height);
-  const FitsAxis x{image.width, "X", "m", 0.5 * (image.width + 1), 0.0, image.pixel_m};
-  const FitsAxis y{image.height, "Y", "m", 0.5 * (image.height + 1), 0.0, image.pixel_m};
+  const FitsAxis x{image.width, "X", "m", 0.5 * (image.width + 1), image.centre_right_m, image.pixel_m};
+  const FitsAxis y{image.height, "Y", "m", 0.5 * (image.height + 1), image.centre_up_m, image.pixel_m};
   FitsColumn name{"NAME", "", {}, {}}, low{"LOW", "nm", {}, {}}, high{"HIGH", "nm", {}, {}},
       source{"SOURCE", "W m-2", {}, {}};
   for (std::size_t b = 0; b < image.bands.size(); ++b) {
@@ -213,6 +227,7 @@ void write_cube(Writer& writer, const Group& group, std::size_t i) {
   direction("UP", image.up, "image y axis, body frame");
   direction("VIEW", image.toward, "toward the observer, body frame");
   file.history("clray " CLRAY_VERSION ": radiance per unit irradiance, mean over each pixel");
+  file.history("X and Y are zero at the reference point of the body");
   file.history("scene " + (writer.scene.path.empty() ? writer.scene.name : writer.scene.path));
   file.history("seed " + std::to_string(writer.result.seed) + ", digest " + hex16(writer.result.digest));
   file.history("time " + number(time_of(writer.result, image.key)) + " s");

@@ -109,6 +109,8 @@ Json image_entry(const ImageResult& image) {
   return {{"width", image.width},
           {"height", image.height},
           {"pixel_m", image.pixel_m},
+          {"centre_right_m", image.centre_right_m},
+          {"centre_up_m", image.centre_up_m},
           {"right", vector(image.right)},
           {"up", vector(image.up)},
           {"toward", vector(image.toward)},

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <limits>
 
 #include "pipeline/estimate.hpp"
@@ -256,6 +257,12 @@ class Writer {
         image->up = plan_.up[v];
         const double* o = plan_.views[v].toward;
         image->toward = Vec3(o[0], o[1], o[2]);
+        const ClrayView& view = plan_.views[v];
+        Vec3 centre;
+        for (int k = 0; k < 3; ++k)
+          centre[k] = view.corner[k] + 0.5 * (view.edge_u[k] + view.edge_v[k]) - scene_.reference_point[k];
+        image->centre_right_m = glm::dot(centre, image->right);
+        image->centre_up_m = glm::dot(centre, image->up);
         image->coverage.resize(pixels);
         const double samples = static_cast<double>(outcome_.sums.points) * plan_.replicates;
         for (std::uint64_t p = 0; p < pixels; ++p)

@@ -93,6 +93,7 @@ struct ImageResult {
   int width = 0, height = 0;
   double pixel_m = 0.0;                               ///< edge of a pixel at the body
   Vec3 right{1, 0, 0}, up{0, 1, 0}, toward{0, 0, 1};  ///< image axes in the body frame
+  double centre_right_m = 0.0, centre_up_m = 0.0;     ///< the picture's centre from the reference point, on those axes
   std::vector<Band> bands;
   std::vector<double> band_source_W_m2;
   std::vector<float> coverage;                ///< [y][x] share of the pixel covered by the body; row 0 on top

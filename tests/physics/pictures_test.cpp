@@ -90,6 +90,36 @@ TEST_CASE("picture axes are right-handed, up is up, and the first row is on top"
   CHECK(centre.y == relative(1.0).epsilon(0.05));
 }
 
+TEST_CASE("a picture says where its centre is, from the reference point along its axes") {
+  // Plates of 1 x 1 m at (2, 0) and (0, 2): the frame runs from -0.5 to 2.5 both ways, so its middle is (1, 1).
+  clray::Scene scene = scene_of(moved(plate_mesh(1.0, 1.0), {2.0, 0.0, 0.0}), lambert(0.9));
+  add(scene, moved(plate_mesh(1.0, 1.0), {0.0, 2.0, 0.0}), lambert(0.9));
+  detect(scene, "hyperspectral", {{"width", 50.0}, {"height", 40.0}, {"samples", 16.0}});
+  for (const clray::Vec3 reference : {clray::Vec3(0.0), clray::Vec3(0.25, -4.0, 8.0)}) {
+    scene.reference_point = reference;
+    // Seen along z, right is +x and up +y; along y, up is -z and right +x (to_body of pictures, docs/results.md).
+    for (const clray::Vec3 o : {clray::Vec3(0, 0, 1), clray::Vec3(0, 1, 0)}) {
+      const clray::ImageResult image = run(monostatic(scene, o)).image.at(0);
+      const double up = o.y == 1.0 ? -(0.0 - reference.z) : 1.0 - reference.y;
+      CHECK(image.centre_right_m == doctest::Approx(1.0 - reference.x).epsilon(1e-13));
+      CHECK(image.centre_up_m == doctest::Approx(up).epsilon(1e-13));
+    }
+  }
+  // The light of each pixel at the place that the axes give it: its mean is the plates' mean, within a pixel.
+  scene.reference_point = {0.25, -4.0, 8.0};
+  const clray::ImageResult image = run(monostatic(scene, {0, 0, 1})).image.at(0);
+  double sum = 0.0, x_sum = 0.0, y_sum = 0.0;
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      const double l = image.radiance_per_sr[static_cast<std::size_t>(y * image.width + x)];
+      sum += l;
+      x_sum += l * (image.centre_right_m + (x + 0.5 - 0.5 * image.width) * image.pixel_m);
+      y_sum += l * (image.centre_up_m + (0.5 * image.height - y - 0.5) * image.pixel_m);
+    }
+  CHECK(std::fabs(x_sum / sum - (1.0 - 0.25)) < image.pixel_m);
+  CHECK(std::fabs(y_sum / sum - (1.0 + 4.0)) < image.pixel_m);
+}
+
 TEST_CASE("hyperspectral cube: each band is the same picture times its own reflectance") {
   clray::Material m = lambert(1.0);
   m.spectra["rho"] = clray::Spectrum{{400.0, 800.0}, {0.2, 0.6}};

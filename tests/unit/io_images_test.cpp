@@ -33,6 +33,8 @@ ImageResult plate(double rho, const std::vector<Band>& bands, const std::string&
   image.width = 3;
   image.height = 2;
   image.pixel_m = 0.25;
+  image.centre_right_m = -2.375;
+  image.centre_up_m = 0.5;
   image.bands = bands;
   image.coverage = {1, 1, 0, 1, 0.5f, 0};
   for (std::size_t b = 0; b < bands.size(); ++b) {
@@ -162,6 +164,23 @@ TEST_CASE("EXR holds the linear radiance of every band") {
   }
 }
 
+TEST_CASE("EXR channels come in the order of the bands, also from ten on") {
+  Scratch scratch;
+  Result result = io_test::result();
+  std::vector<Band> bands;
+  for (int b = 0; b < 12; ++b) bands.push_back({"band", 400.0 + b, 401.0 + b});
+  result.image.push_back(plate(0.3, bands));
+  write_result(result, io_test::scene("rgb"), scratch / "out", no_plots());
+  Imf::InputFile file((scratch / "out/rgb.exr").c_str());
+  std::vector<std::string> names;
+  const Imf::ChannelList& channels = file.header().channels();
+  for (auto channel = channels.begin(); channel != channels.end(); ++channel) {
+    if (std::string(channel.name()).rfind("radiance.", 0) == 0) names.push_back(channel.name());
+  }
+  REQUIRE(names.size() == 12);
+  for (std::size_t b = 0; b < names.size(); ++b) CHECK(std::stoul(names[b].substr(9)) == b);
+}
+
 TEST_CASE("several orientations: a picture each and a contact sheet") {
   Scratch scratch;
   Result result = io_test::result();
@@ -220,6 +239,14 @@ TEST_CASE("hyperspectral.fits: values, axes and history read back through cfitsi
   CHECK(number == 50.0);
   fits_read_key(file, TDOUBLE, "CDELT1", &number, nullptr, &status);
   CHECK(number == 0.25);
+  // The middle of 3 x 2 pixels, 1 being the first's centre, and where it lies from the reference point.
+  const double middle[][2] = {{2.0, -2.375}, {1.5, 0.5}};
+  for (int axis = 0; axis < 2; ++axis) {
+    fits_read_key(file, TDOUBLE, axis == 0 ? "CRPIX1" : "CRPIX2", &number, nullptr, &status);
+    CHECK(number == middle[axis][0]);
+    fits_read_key(file, TDOUBLE, axis == 0 ? "CRVAL1" : "CRVAL2", &number, nullptr, &status);
+    CHECK(number == middle[axis][1]);
+  }
   char* header = nullptr;
   int keys = 0;
   fits_hdr2str(file, 0, nullptr, 0, &header, &keys, &status);
