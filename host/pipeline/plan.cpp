@@ -235,7 +235,8 @@ void Planner::specialise() {
                                     [](const ClrayConnection& c) { return c.shadow != 0; });
   const bool moving_parts = std::any_of(geometry_.parts.begin(), geometry_.parts.end(),
                                         [](const Part& part) { return part.hinged_component >= 0; });
-  const bool only_lambert = p_.surfaces.models.size() == 1 && p_.surfaces.models[0] == table_index("brdf", "lambert");
+  const bool bounded = std::all_of(p_.surfaces.models.begin(), p_.surfaces.models.end(),
+                                   [](int row) { return table("brdf")[row].bounded; });
   const bool connects_again = p_.connect && p_.max_bounces > 1;
   std::string why_no_shadow = !p_.connect        ? "nothing is connected to an observer"
                               : geometry_.convex ? "the body is convex: what faces the observer is seen"
@@ -253,8 +254,8 @@ void Planner::specialise() {
          "every material reflects from both sides");
   decide("CLRAY_INSTANCED", moving_parts, "moving parts and their transforms", "a component is hinged",
          "no component is hinged; fixed transforms are done once on the host");
-  decide("CLRAY_WIDE", p_.scatter || bistatic || !only_lambert, "second accumulator",
-         "weights may exceed the bound of a first bounce", "weights of a Lambert surface are bounded");
+  decide("CLRAY_WIDE", p_.scatter || bistatic || !bounded, "second accumulator",
+         "weights may exceed the bound of a first bounce", "weights of these surfaces are bounded");
   p_.options.defines["CLRAY_STRATA"] = p_.strata.empty() ? "0" : "1";
   if (!p_.strata.empty()) {
     p_.kept.push_back("strata of the beam: the Sobol sampler, spread over the body's silhouette, delays and peaks");

@@ -91,7 +91,7 @@ Surfaces build_surfaces(const Scene& scene, const std::vector<Lane>& lanes, bool
         }
       }
       s.one_sided = s.one_sided || !m.two_sided;
-      s.delta = s.delta || m.model == "mirror";
+      s.delta = s.delta || table("brdf")[row].delta;
       used[row] = true;
       s.materials.push_back(out);
     }

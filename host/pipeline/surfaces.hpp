@@ -25,7 +25,7 @@ struct Surfaces {
   std::uint32_t columns = 0;
   std::vector<int> models;  ///< rows of brdf.def in use, ascending
   bool one_sided = false;   ///< some material has a black back
-  bool delta = false;       ///< some material is a mirror
+  bool delta = false;       ///< some material is an ideal reflector
 };
 
 /// Every (variant, band) of the scene, variants outermost.

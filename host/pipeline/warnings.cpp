@@ -72,9 +72,8 @@ std::string few_replicates(const PassPlan& plan, const Geometry& geometry, const
 /// facets were never met. A few flat faces show their whole lobe to the first rays that meet them.
 bool curved(const Geometry& geometry, double rays) {
   constexpr double kRaysPerFacet = 100.0;
-  const int box = table_index("shape", "box");
   for (const ClrayPrimitive& p : geometry.primitives) {
-    if ((p.flags & CLRAY_PRIMITIVE_PLANE) == 0 && static_cast<int>(p.shape) != box) return true;
+    if (!table("shape")[p.shape].flat) return true;
   }
   return kRaysPerFacet * static_cast<double>(geometry.report.triangles) > rays;
 }

@@ -72,7 +72,7 @@ std::string row_text(const TableRow& row, const std::map<std::string, double>& p
 }
 
 std::string material_text(const Material& m) {
-  const TableRow& row = table("brdf")[static_cast<std::size_t>(table_index("brdf", m.model))];
+  const TableRow& row = table_row("brdf", m.model);
   std::string text = row_text(row, m.parameters, m.spectra);
   if (m.table) {
     text += fmt::format(", table of {} x {} x {} angles", m.table->theta_i_rad.size(), m.table->theta_o_rad.size(),
@@ -134,7 +134,7 @@ std::string component_materials(const Scene& scene, const Component& c) {
 std::string body_text(const Scene& scene) {
   Columns components, materials;
   for (const Component& c : scene.components) {
-    const TableRow& row = table("shape")[static_cast<std::size_t>(table_index("shape", c.shape))];
+    const TableRow& row = table_row("shape", c.shape);
     const std::string what = c.mesh ? mesh_text(*c.mesh) : row_text(row, c.parameters);
     components.add({c.name, c.shape, component_materials(scene, c), what + place_text(c)});
   }
@@ -227,7 +227,7 @@ std::string describe_scene(const Scene& scene) {
   if (scene.motion) lines.add({"motion", motion_text(*scene.motion)});
   if (scene.station) lines.add({"station", station_text(*scene.station)});
   for (const DetectorSpec& d : scene.detectors) {
-    const TableRow& row = table("detector")[static_cast<std::size_t>(table_index("detector", d.kind))];
+    const TableRow& row = table_row("detector", d.kind);
     const std::string options = row_text(row, d.parameters);
     const std::string what = d.name == d.kind ? d.kind : d.name + ": " + d.kind;
     lines.add({"detector", what + (options.empty() ? "" : ", " + options)});

@@ -15,16 +15,6 @@
 namespace clray {
 namespace {
 
-std::vector<std::string> model_names() {
-  std::vector<std::string> names;
-  for (const TableRow& row : table("brdf")) names.push_back(row.name);
-  return names;
-}
-
-const TableRow& model_row(const std::string& model) {
-  return table("brdf")[static_cast<std::size_t>(table_index("brdf", model))];
-}
-
 /// A spectrum whose every value the key accepts.
 Spectrum key_spectrum(const TableKey& key, const std::string& file) {
   const Spectrum spectrum = read_spectrum(file, key.low, key.high);
@@ -107,7 +97,7 @@ void parse_pair(const std::string& pair, const TableRow& row, Material* m) {
     m->infrared_reflectance = value;
     return;
   }
-  if (name == "file" && row.id == "tabulated") {
+  if (name == "file" && row.file) {
     m->table = std::make_shared<BrdfTable>(read_brdf_table(word));
     return;
   }
@@ -151,8 +141,8 @@ Material read_material(TomlTable& t, const Material* base) {
   const bool inherits = base != nullptr && !t.has("model");
   if (inherits) m = *base;
   m.name = t.name("name");
-  m.model = t.choice("model", model_names(), inherits ? m.model : std::optional<std::string>());
-  const TableRow& row = model_row(m.model);
+  m.model = t.choice("model", row_names("brdf"), inherits ? m.model : std::optional<std::string>());
+  const TableRow& row = table_row("brdf", m.model);
   for (const TableKey& key : row.keys) {
     const toml::node* value = t.node(key.name);
     if (value != nullptr && value->is_string() && !key.is_switch) {
@@ -164,7 +154,7 @@ Material read_material(TomlTable& t, const Material* base) {
   }
   m.two_sided = t.boolean("two_sided", m.two_sided);
   m.infrared_reflectance = t.number("infrared_reflectance", kShare, m.infrared_reflectance);
-  if (row.id == "tabulated" && (t.has("file") || !m.table)) {
+  if (row.file && (t.has("file") || !m.table)) {
     m.table = std::make_shared<BrdfTable>(read_brdf_table(t.file("file")));
   }
   t.finish();
@@ -176,14 +166,14 @@ Material parse_material(const std::string& text) {
   Material m;
   m.name = "command line";
   if (!(words >> m.model)) usage("expected \"model key=value …\", found nothing");
-  const std::vector<std::string> models = model_names();
+  const std::vector<std::string> models = row_names("brdf");
   if (table_index("brdf", m.model) < 0) {
     usage(fmt::format("unknown model '{}'; expected one of {}{}", m.model, fmt::join(models, ", "),
                       did_you_mean(m.model, models)));
   }
-  const TableRow& row = model_row(m.model);
+  const TableRow& row = table_row("brdf", m.model);
   for (std::string pair; words >> pair;) parse_pair(pair, row, &m);
-  if (row.id == "tabulated" && !m.table) usage("model 'tabulated' needs file=TABLE.csv");
+  if (row.file && !m.table) usage(fmt::format("model '{}' needs file=TABLE.csv", row.name));
   return m;
 }
 

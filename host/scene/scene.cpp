@@ -54,7 +54,7 @@ Vec3 option_direction(const Vec3& v, const std::string& option) {
 /// comes from the viewer's own eye, as a laser station's does, shows no relief.
 void light_for_pictures(const SceneOptions& options, Scene* scene) {
   const bool pictures = std::all_of(scene->detectors.begin(), scene->detectors.end(), [](const DetectorSpec& d) {
-    return table("detector")[static_cast<std::size_t>(table_index("detector", d.kind))].side == "pixel";
+    return table_row("detector", d.kind).side == "pixel";
   });
   if (!pictures || options.source || options.observer_at_source) return;
   scene->source.kind = Source::Kind::sun;
@@ -96,15 +96,15 @@ void apply_detectors(const SceneOptions& options, Scene* scene) {
   if (!options.bins) return;
   bool used = false;
   for (DetectorSpec& d : scene->detectors) {
-    if (d.kind != "delay") continue;
+    const TableKey* key = find_key(table_row("detector", d.kind), "bins");
+    if (key == nullptr) continue;
+    std::string expected;
+    if (!key_accepts(*key, *options.bins, &expected)) throw Error(ErrorCode::usage, "expected " + expected, "--bins");
     d.parameters["bins"] = *options.bins;
     d.parameters.erase("bin_ps");
     used = true;
   }
-  if (!used) throw Error(ErrorCode::usage, "needs a delay detector", "--bins");
-  const TableKey& key = table("detector")[static_cast<std::size_t>(table_index("detector", "delay"))].keys[0];
-  std::string expected;
-  if (!key_accepts(key, *options.bins, &expected)) throw Error(ErrorCode::usage, "expected " + expected, "--bins");
+  if (!used) throw Error(ErrorCode::usage, "needs a detector with bins, such as delay", "--bins");
 }
 
 void apply_options(const SceneOptions& options, Scene* scene) {
@@ -130,12 +130,6 @@ void apply_options(const SceneOptions& options, Scene* scene) {
 }
 
 }  // namespace
-
-std::vector<std::string> row_names(const std::string& kind) {
-  std::vector<std::string> names;
-  for (const TableRow& row : table(kind)) names.push_back(row.name);
-  return names;
-}
 
 Scene load_scene(const std::string& path, const SceneOptions& options) {
   if (!(options.length_unit_m >= 0.0 && std::isfinite(options.length_unit_m))) {

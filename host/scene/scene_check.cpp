@@ -48,8 +48,8 @@ void check_keys(const std::string& where, const TableRow& row, const std::map<st
   std::vector<std::string> known;
   for (const TableKey& key : row.keys) known.push_back(key.name);
   for (const auto& [name, value] : parameters) {
-    const auto key = std::find_if(row.keys.begin(), row.keys.end(), [&](const TableKey& k) { return k.name == name; });
-    if (key == row.keys.end()) {
+    const TableKey* key = find_key(row, name);
+    if (key == nullptr) {
       fail(where, fmt::format("unknown key '{}' of '{}'{}", name, row.name, did_you_mean(name, known)));
     }
     std::string expected;
@@ -99,12 +99,12 @@ void check_material(const std::string& where, const Material& m) {
   check_keys(where, row, m.parameters);
   check_number(where + ".infrared_reflectance", m.infrared_reflectance, kShare);
   for (const auto& [name, spectrum] : m.spectra) {
-    const auto key = std::find_if(row.keys.begin(), row.keys.end(), [&](const TableKey& k) { return k.name == name; });
-    if (key == row.keys.end()) fail(where, fmt::format("unknown key '{}' of '{}'", name, row.name));
-    check_spectrum(where + "." + name, spectrum, &*key);
+    const TableKey* key = find_key(row, name);
+    if (key == nullptr) fail(where, fmt::format("unknown key '{}' of '{}'", name, row.name));
+    check_spectrum(where + "." + name, spectrum, key);
   }
-  if (row.id == "tabulated") {
-    if (!m.table) fail(where + ".table", "missing; the model 'tabulated' needs a table");
+  if (row.file) {
+    if (!m.table) fail(where + ".table", fmt::format("missing; the model '{}' needs a table", row.name));
     check_table(where + ".table", *m.table);
   }
 }
@@ -115,7 +115,7 @@ void check_component(const std::string& where, const Scene& scene, const Compone
   const std::string fault = shape_fault(c);
   if (!fault.empty()) fail(where, fault);
   std::size_t slots = 1;
-  if (c.shape == "mesh") {
+  if (row.file) {
     if (!c.mesh || c.mesh->triangles.empty()) fail(where + ".mesh", "missing; expected a mesh with triangles");
     if (c.mesh->triangle_slot.size() != c.mesh->triangles.size())
       fail(where + ".mesh", "expected one slot per triangle");

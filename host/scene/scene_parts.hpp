@@ -31,7 +31,4 @@ std::string detector_fault(const DetectorSpec& detector);
 /// What is wrong with a source (bands that it has no light in), or "".
 std::string source_fault(const Source& source);
 
-/// Names of the rows of a table.
-std::vector<std::string> row_names(const std::string& kind);
-
 }  // namespace clray

@@ -119,7 +119,7 @@ void read_grouped(TomlTable& t, const TableRow& row, Component* c) {
 
 void read_shape(TomlTable& t, Component* c) {
   c->shape = t.choice("shape", row_names("shape"), "mesh");
-  const TableRow& row = table("shape")[static_cast<std::size_t>(table_index("shape", c->shape))];
+  const TableRow& row = table_row("shape", c->shape);
   read_grouped(t, row, c);
   for (const TableKey& key : row.keys) {
     if (const std::optional<double> value = t.row_key(key)) c->parameters[key.name] = *value;
@@ -211,7 +211,7 @@ void read_components(TomlTable& root, double length_unit_m, Scene* scene) {
     if (std::optional<TomlTable> transform = t.table("transform")) c.transform = read_transform(*transform);
     if (std::optional<TomlTable> hinge = t.table("hinge")) c.hinge = read_hinge(*hinge);
     t.know({"material"});
-    if (c.shape == "mesh") {
+    if (table_row("shape", c.shape).file) {
       t.know({"file", "materials"});
       read_mesh(t, length_unit_m, &cache, scene, &c);
     }

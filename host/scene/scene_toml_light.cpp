@@ -267,7 +267,7 @@ void read_detectors(TomlTable& root, Scene* scene) {
     DetectorSpec d;
     d.kind = t.choice("kind", row_names("detector"));
     d.name = t.name("name", d.kind);
-    for (const TableKey& key : table("detector")[static_cast<std::size_t>(table_index("detector", d.kind))].keys) {
+    for (const TableKey& key : table_row("detector", d.kind).keys) {
       if (const std::optional<double> value = t.row_key(key)) d.parameters[key.name] = *value;
     }
     t.finish();

@@ -3,9 +3,11 @@
 // the listings and the packer share. A row that cannot be read is a fault of clray, not of a scene.
 #include "scene/tables.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "clray/error.hpp"
 
@@ -15,18 +17,18 @@ namespace {
 struct RawRow {
   const char* id;
   const char* name;
-  const char* side;
+  const char* traits;
   const char* keys;
   const char* meaning;
 };
 
 const RawRow kBrdfRows[] = {
-#define BRDF(id, name, keys, meaning) {#id, name, "", keys, meaning},
+#define BRDF(id, name, traits, keys, meaning) {#id, name, traits, keys, meaning},
 #include "brdf/brdf.def"
 #undef BRDF
 };
 const RawRow kShapeRows[] = {
-#define SHAPE(id, name, keys, meaning) {#id, name, "", keys, meaning},
+#define SHAPE(id, name, traits, keys, meaning) {#id, name, traits, keys, meaning},
 #include "shape/shape.def"
 #undef SHAPE
 };
@@ -88,6 +90,23 @@ void parse_range(const std::string& row, TableKey* key) {
   key->high_included = close == ']';
 }
 
+void parse_traits(const std::string& traits, TableRow* row) {
+  const std::pair<const char*, bool TableRow::*> known[] = {{"delta", &TableRow::delta},
+                                                            {"bounded", &TableRow::bounded},
+                                                            {"flat", &TableRow::flat},
+                                                            {"file", &TableRow::file}};
+  std::size_t at = 0;
+  for (std::string word = next_word(traits, &at); !word.empty(); word = next_word(traits, &at)) {
+    if (word == "beam" || word == "pixel") {
+      row->side = word;
+      continue;
+    }
+    const auto trait = std::find_if(std::begin(known), std::end(known), [&](const auto& k) { return k.first == word; });
+    if (trait == std::end(known)) malformed(row->id, "unknown trait '" + word + "'");
+    row->*trait->second = true;
+  }
+}
+
 TableKey parse_key(const TableRow& row, const std::string& text) {
   std::size_t at = 0;
   TableKey key;
@@ -117,7 +136,7 @@ template <std::size_t N>
 std::vector<TableRow> parse_rows(const RawRow (&raw)[N]) {
   std::vector<TableRow> rows;
   for (const RawRow& r : raw) {
-    rows.push_back(parse_row(r.id, r.name, r.side, r.keys, r.meaning));
+    rows.push_back(parse_row(r.id, r.name, r.traits, r.keys, r.meaning));
     for (std::size_t i = 0; i + 1 < rows.size(); ++i) {
       if (rows[i].id == rows.back().id || rows[i].name == rows.back().name) malformed(r.id, "row occurs twice");
     }
@@ -127,15 +146,14 @@ std::vector<TableRow> parse_rows(const RawRow (&raw)[N]) {
 
 }  // namespace
 
-TableRow parse_row(const std::string& id, const std::string& name, const std::string& side, const std::string& keys,
+TableRow parse_row(const std::string& id, const std::string& name, const std::string& traits, const std::string& keys,
                    const std::string& meaning) {
   TableRow row;
   row.id = id;
   row.name = name;
-  row.side = side;
   row.meaning = meaning;
   if (id.empty() || name.empty() || meaning.empty()) malformed(id, "needs an id, a name and a meaning");
-  if (!side.empty() && side != "beam" && side != "pixel") malformed(id, "side '" + side + "', not beam or pixel");
+  parse_traits(traits, &row);
   for (std::size_t at = 0; at < keys.size();) {
     const std::size_t end = std::min(keys.find(';', at), keys.size());
     row.keys.push_back(parse_key(row, keys.substr(at, end - at)));
@@ -167,12 +185,29 @@ const std::vector<TableRow>& table(const std::string& kind) {
   throw Error(ErrorCode::bug, "there is no table '" + kind + "'");
 }
 
+std::vector<std::string> row_names(const std::string& kind) {
+  std::vector<std::string> names;
+  for (const TableRow& row : table(kind)) names.push_back(row.name);
+  return names;
+}
+
 int table_index(const std::string& kind, const std::string& name) {
   const std::vector<TableRow>& rows = table(kind);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if (rows[i].name == name) return static_cast<int>(i);
   }
   return -1;
+}
+
+const TableRow& table_row(const std::string& kind, const std::string& name) {
+  const int index = table_index(kind, name);
+  if (index < 0) throw Error(ErrorCode::bug, "there is no row '" + name + "' in the table '" + kind + "'");
+  return table(kind)[static_cast<std::size_t>(index)];
+}
+
+const TableKey* find_key(const TableRow& row, const std::string& name) {
+  const auto key = std::find_if(row.keys.begin(), row.keys.end(), [&](const TableKey& k) { return k.name == name; });
+  return key == row.keys.end() ? nullptr : &*key;
 }
 
 std::vector<double> row_values(const TableRow& row, const std::map<std::string, double>& parameters) {

@@ -25,6 +25,11 @@ struct TableRow {
   std::string id;    ///< identifier: the kernel file's stem
   std::string name;  ///< scene-file name
   std::string side;  ///< detectors: "beam" or "pixel"
+  // Traits, see the heads of the .def files.
+  bool delta = false;    ///< models: an ideal reflection
+  bool bounded = false;  ///< models: no weight exceeds the bound of a first bounce
+  bool flat = false;     ///< shapes: every face lies in a plane
+  bool file = false;     ///< models and shapes: read from a file
   std::vector<TableKey> keys;
   std::string meaning;
 };
@@ -32,12 +37,22 @@ struct TableRow {
 /// Rows in the order of the file, which is the number kernels know them by. kind: "brdf", "shape", "detector".
 const std::vector<TableRow>& table(const std::string& kind);
 
-/// One row from its texts, as written in a .def file. Throws Error(bug) where it is malformed.
-TableRow parse_row(const std::string& id, const std::string& name, const std::string& side, const std::string& keys,
+/// The row of this scene-file name, which must be there.
+const TableRow& table_row(const std::string& kind, const std::string& name);
+
+/// The row's key of this name, or null.
+const TableKey* find_key(const TableRow& row, const std::string& name);
+
+/// One row from its texts, as written in a .def file; `traits` are words, of a detector its side. Throws Error(bug)
+/// where it is malformed.
+TableRow parse_row(const std::string& id, const std::string& name, const std::string& traits, const std::string& keys,
                    const std::string& meaning);
 
 /// Whether `value` may be given for `key`; if not, `expected` says what may ("a whole number in [1..1e7]").
 bool key_accepts(const TableKey& key, double value, std::string* expected = nullptr);
+
+/// Scene-file names of the rows, in order.
+std::vector<std::string> row_names(const std::string& kind);
 
 /// Row number by scene-file name, or -1.
 int table_index(const std::string& kind, const std::string& name);

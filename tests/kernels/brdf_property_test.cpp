@@ -176,6 +176,17 @@ TEST_CASE("the bound holds over all normals") {
   }
 }
 
+TEST_CASE("a row states the traits of its model: delta, bounded") {
+  for (const Model& m : models(true)) {
+    INFO(m.name);
+    const clray::TableRow& row = clray::table("brdf")[m.material.model];
+    CHECK(m.is_delta() == row.delta);
+    // With "the bound holds over all normals": one number for every pair of directions.
+    if (row.bounded)
+      for (double u : {0.0, 1e-9, 0.3, 0.7, 1.0}) CHECK(m.bound(u) == m.bound(1.0));
+  }
+}
+
 TEST_CASE("numbers are finite and not negative up to 89.99999 degrees and at the ends of the uniforms") {
   std::vector<double> mus = {1.0, 1.0 - 1e-16, 0.5, 1e-3, std::cos(89.99999 * kPi / 180.0), 1e-15, 1e-160};
   const double ends[] = {0x1p-33, 0.5, 1.0 - 0x1p-33, 0x1p-53, 1.0 - 0x1p-53};

@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "kernels/shape_model.hpp"
+#include "scene/tables.hpp"
 
 namespace {
 using namespace shape_model;
@@ -113,6 +114,25 @@ TEST_CASE("traits: closed and convex only with ends, planes are planes") {
         c.plane ? CLRAY_SHAPE_CONVEX | CLRAY_SHAPE_PLANE : (c.capped ? CLRAY_SHAPE_CLOSED | CLRAY_SHAPE_CONVEX : 0);
     INFO(c.name);
     CHECK(shape_kernels::shape_traits(c.row, c.p.data()) == expected);
+  }
+}
+
+TEST_CASE("a row states whether every face of its shape is flat") {
+  for (const Case& c : cases()) {
+    bool flat = true;
+    for (int face = 0; face < faces(c); ++face) {
+      const vec3 a = surface_at(c, face, 0.3, 0.1);
+      const vec3 n =
+          v3_unit(v3_cross(v3_sub(surface_at(c, face, 0.9, 0.2), a), v3_sub(surface_at(c, face, 0.8, 0.4), a)));
+      for (int k = 0; k < 100; ++k) {
+        const vec3 x = surface_at(c, face, (k % 10 + 0.5) / 10, (k / 10 + 0.5) / 10);
+        // Of points within the size, by a normal made of differences of at least a hundredth of it: 1e-12 holds
+        // their rounding. The flattest curved face, a cone's, bends by some 1e-3 of the size.
+        flat = flat && std::fabs(v3_dot(v3_sub(x, a), n)) < 1e-12 * c.size;
+      }
+    }
+    INFO(c.name);
+    CHECK(clray::table("shape")[c.row].flat == flat);
   }
 }
 

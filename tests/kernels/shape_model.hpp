@@ -17,7 +17,7 @@
 
 namespace shape_kernels {
 // clang-format off: the shapes come before what chooses among them
-#define SHAPE(id, name, keys, what) CLRAY_SHAPE_##id,
+#define SHAPE(id, ...) CLRAY_SHAPE_##id,
 enum ShapeRow : u32 {
 #include "shape/shape.def"
 };

@@ -72,6 +72,29 @@ TEST_CASE("tables: defaults fill in, also from an earlier key") {
   CHECK(row_values(row, {{"rho", 0.9}, {"f0", 0.1}}) == std::vector<double>{0.9, 0.5, 50.0, 0.1});
 }
 
+TEST_CASE("tables: traits are words of a row") {
+  CHECK(table_row("brdf", "mirror").delta);
+  CHECK_FALSE(table_row("brdf", "ggx").delta);
+  CHECK(table_row("brdf", "lambert").bounded);
+  CHECK_FALSE(table_row("brdf", "ashikhmin-shirley").bounded);
+  CHECK(table_row("brdf", "tabulated").file);
+  CHECK(table_row("shape", "mesh").file);
+  CHECK(table_row("shape", "mesh").flat);
+  CHECK_FALSE(table_row("shape", "sphere").flat);
+  const TableRow row = parse_row("x", "x", " flat  delta", "", "m");
+  CHECK(row.flat);
+  CHECK(row.delta);
+  CHECK_FALSE(row.file);
+  CHECK(parse_row("x", "x", "pixel", "", "m").side == "pixel");
+  try {
+    parse_row("x", "x", "flatt", "", "m");
+    FAIL("expected an error");
+  } catch (const Error& e) {
+    CHECK(std::string(e.what()) == "x: malformed table row: unknown trait 'flatt'");
+  }
+  CHECK_THROWS_AS(table_row("brdf", "velvet"), Error);
+}
+
 TEST_CASE("tables: malformed rows are bugs of clray") {
   CHECK(bug_of("rho 0.5 [0,1] diffuse") == "");
   CHECK(bug_of("") == "");
