@@ -5,9 +5,9 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
-#include <numeric>
 
 #include "clray/error.hpp"
+#include "text/near_miss.hpp"
 
 namespace clray::cli {
 
@@ -32,36 +32,14 @@ struct Texts {
   std::optional<std::string> rays, target, time, source, observer, bins, bounces, seed, unit, group, slice, sampler;
 };
 
-std::size_t edit_distance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i + 1;
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t next = std::min({row[j] + 1, row[j + 1] + 1, diagonal + (a[i] == b[j] ? 0 : 1)});
-      diagonal = row[j + 1];
-      row[j + 1] = next;
-    }
-  }
-  return row.back();
-}
-
 /// "; did you mean --x?" for an option that comes near, else nothing.
 std::string suggestion(const CLI::App& app, const std::string& word) {
-  const std::string name = word.substr(0, word.find('='));
-  std::string best;
-  std::size_t nearest = 3;
+  std::vector<std::string> known;
   for (const auto* option : app.get_options()) {
-    for (const auto& known : option->get_lnames()) {
-      const std::size_t distance = edit_distance(name, "--" + known);
-      if (distance < nearest) {
-        nearest = distance;
-        best = "--" + known;
-      }
-    }
+    for (const auto& name : option->get_lnames()) known.push_back("--" + name);
   }
-  return best.empty() ? "" : "; did you mean " + best + "?";
+  const std::string near = text::nearest(word.substr(0, word.find('=')), known);
+  return near.empty() ? "" : "; did you mean " + near + "?";
 }
 
 /// Help in lines of at most 66 characters; CLI11 indents what follows a line break.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the command line shows a person; see report.hpp. Text is UTF-8; columns are counted in characters.
+// What the command line shows a person; see report.hpp. Text is UTF-8.
 #include "report.hpp"
 
 #include <fmt/format.h>
@@ -10,41 +10,16 @@
 #include <cmath>
 #include <cstdio>
 
+#include "text/columns.hpp"
+
 namespace clray::cli {
 
 namespace {
 
+using text::characters;
+using text::Columns;
+
 constexpr double kPi = 3.14159265358979323846;
-
-std::size_t characters(const std::string& text) {
-  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xc0) != 0x80; }));
-}
-
-/// Text cells in aligned columns, two spaces between.
-class Columns {
- public:
-  void row(std::vector<std::string> cells) { rows_.push_back(std::move(cells)); }
-  std::string text(const std::string& indent) const {
-    std::vector<std::size_t> widths;
-    for (const auto& cells : rows_) {
-      widths.resize(std::max(widths.size(), cells.size()));
-      for (std::size_t i = 0; i < cells.size(); ++i) widths[i] = std::max(widths[i], characters(cells[i]));
-    }
-    std::string all;
-    for (const auto& cells : rows_) {
-      all += indent;
-      for (std::size_t i = 0; i < cells.size(); ++i) {
-        all += cells[i];
-        if (i + 1 < cells.size()) all += std::string(widths[i] - characters(cells[i]) + 2, ' ');
-      }
-      all += '\n';
-    }
-    return all;
-  }
-
- private:
-  std::vector<std::vector<std::string>> rows_;
-};
 
 std::string with_unit(const std::string& number, const char* unit) {
   return number == "n/a" ? number : number + " " + unit;
@@ -118,9 +93,9 @@ std::string device_line(const DeviceInfo& device) {
 
 std::string device_table(const std::vector<DeviceInfo>& devices) {
   Columns columns;
-  columns.row({"index", "type", "name", "platform", "driver", "units", "memory", "usable"});
+  columns.add({"index", "type", "name", "platform", "driver", "units", "memory", "usable"});
   for (const auto& d : devices) {
-    columns.row({std::to_string(d.index), d.type, d.name, d.platform, d.driver, std::to_string(d.compute_units),
+    columns.add({std::to_string(d.index), d.type, d.name, d.platform, d.driver, std::to_string(d.compute_units),
                  fmt::format("{:.1f} GiB", d.memory_GiB), d.fp64 ? "yes" : "no: lacks fp64"});
   }
   return columns.text("");
@@ -156,21 +131,21 @@ std::string more_rows(std::size_t count) {
 
 void one_pulse(Columns& table, const DelayResult& delay) {
   const auto& a = delay.intensity_m2_per_sr;
-  table.row({"A", amount(a, 1.0, "m²/sr") + "   (95 %: ±" + percent_error(a) + ")"});
-  table.row({"cross-section", amount(a, 4.0 * kPi, "m²")});
-  table.row({"mean delay", amount(delay.mean_delay_s, 1e9, "ns")});
-  table.row({"rms width", amount(delay.rms_width_s, 1e9, "ns")});
+  table.add({"A", amount(a, 1.0, "m²/sr") + "   (95 %: ±" + percent_error(a) + ")"});
+  table.add({"cross-section", amount(a, 4.0 * kPi, "m²")});
+  table.add({"mean delay", amount(delay.mean_delay_s, 1e9, "ns")});
+  table.add({"rms width", amount(delay.rms_width_s, 1e9, "ns")});
 }
 
 std::string many_pulses(const Result& result) {
   Columns table;
-  table.row({"delay", "A (m²/sr)", "cross-section (m²)", "mean delay (ns)", "rms width (ns)"});
+  table.add({"delay", "A (m²/sr)", "cross-section (m²)", "mean delay (ns)", "rms width (ns)"});
   const auto number = [](const Estimate& e, double scale) {
     return format_with_error(e.value * scale, e.standard_error * scale);
   };
   for (std::size_t i = 0; i < std::min(result.delay.size(), kMostRows); ++i) {
     const auto& delay = result.delay[i];
-    table.row({member(delay.key, result.orientations.size()), number(delay.intensity_m2_per_sr, 1.0),
+    table.add({member(delay.key, result.orientations.size()), number(delay.intensity_m2_per_sr, 1.0),
                number(delay.intensity_m2_per_sr, 4.0 * kPi), number(delay.mean_delay_s, 1e9),
                number(delay.rms_width_s, 1e9)});
   }
@@ -180,14 +155,14 @@ std::string many_pulses(const Result& result) {
 std::string bands(const Result& result) {
   if (result.spectrometer.empty()) return "";
   Columns table;
-  table.row({"spectrometer", "band (nm)", "A (m²/sr)", "received (W/m²)", "AB magnitude", "phase angle (°)"});
+  table.add({"spectrometer", "band (nm)", "A (m²/sr)", "received (W/m²)", "AB magnitude", "phase angle (°)"});
   for (std::size_t i = 0; i < std::min(result.spectrometer.size(), kMostRows); ++i) {
     const auto& s = result.spectrometer[i];
     ResultKey key = s.key;
     key.band.clear();
     const std::string magnitude = format_with_error(s.magnitude_AB, s.magnitude_standard_error);
     const bool received = s.received_W_m2 > 0.0;
-    table.row({member(key, result.orientations.size()), fmt::format("{:g}-{:g}", s.band.low_nm, s.band.high_nm),
+    table.add({member(key, result.orientations.size()), fmt::format("{:g}-{:g}", s.band.low_nm, s.band.high_nm),
                format_with_error(s.intensity_m2_per_sr.value, s.intensity_m2_per_sr.standard_error),
                received ? format_with_error(s.received_W_m2, s.received_W_m2_standard_error) : "n/a (no range)",
                magnitude, fmt::format("{:.4g}", s.phase_angle_rad * 180.0 / kPi)});
@@ -215,12 +190,12 @@ std::string forces(const Result& result) {
   if (result.pressure.empty()) return "";
   if (result.pressure.size() > kMostRows / 3) return force_span(result);
   Columns table;
-  table.row({"pressure", "", "x", "y", "z"});
+  table.add({"pressure", "", "x", "y", "z"});
   const auto three = [&](const std::string& name, const char* what, const VectorEstimate& v, double scale) {
     const auto cell = [&](int axis) {
       return format_with_error(v.value[axis] * scale, v.standard_error[axis] * scale);
     };
-    table.row({name, what, cell(0), cell(1), cell(2)});
+    table.add({name, what, cell(0), cell(1), cell(2)});
   };
   for (const auto& p : result.pressure) {
     three(member(p.key, result.orientations.size()), "force coefficient C (m²)", p.coefficient_m2, 1.0);
@@ -271,31 +246,31 @@ std::string totals_line(const Result& result) {
 std::string closing_table(const Result& result, const Scene& scene, const std::string& folder,
                           const std::vector<std::string>& files, const Reference* reference) {
   Columns table;
-  table.row({"scene", scene.path.empty() ? scene.name : scene.path});
-  table.row({"device", device_line(result.device)});
-  table.row({"triangles", fmt::format("{}", result.mesh.triangles) +
+  table.add({"scene", scene.path.empty() ? scene.name : scene.path});
+  table.add({"device", device_line(result.device)});
+  table.add({"triangles", fmt::format("{}", result.mesh.triangles) +
                               (result.mesh.triangles ? fmt::format(", {:.6g} m²", result.mesh.area_m2) : "")});
-  table.row({"extent", fmt::format("{:.6g} m across", result.extent_m)});
-  if (result.orientations.size() > 1) table.row({"orientations", std::to_string(result.orientations.size())});
-  table.row({"rays", short_count(static_cast<double>(result.rays)) +
+  table.add({"extent", fmt::format("{:.6g} m across", result.extent_m)});
+  if (result.orientations.size() > 1) table.add({"orientations", std::to_string(result.orientations.size())});
+  table.add({"rays", short_count(static_cast<double>(result.rays)) +
                          (result.orientations.size() > 1 ? " per orientation" : "") +
                          (result.rays_total > result.rays * std::max<std::size_t>(result.orientations.size(), 1)
                               ? ", " + short_count(static_cast<double>(result.rays_total)) + " in all"
                               : "")});
   const auto& s = result.seconds;
-  table.row({"time", fmt::format("{} (load {}, BVH {}, compile {}, trace {})", short_time(s.total), short_time(s.load),
+  table.add({"time", fmt::format("{} (load {}, BVH {}, compile {}, trace {})", short_time(s.total), short_time(s.load),
                                  short_time(s.bvh), short_time(s.compile), short_time(s.trace))});
-  if (result.target_asked) table.row({"target", target_row(result)});
+  if (result.target_asked) table.add({"target", target_row(result)});
   if (result.delay.size() == 1) one_pulse(table, result.delay.front());
   if (reference) {
     const double error = relative_true_error(result, *reference);
-    table.row({"true error", std::isfinite(error) ? fmt::format("{:.3g} % against {}", 100.0 * error, reference->file)
+    table.add({"true error", std::isfinite(error) ? fmt::format("{:.3g} % against {}", 100.0 * error, reference->file)
                                                   : "n/a: " + reference->file + " has none of these totals"});
   }
-  table.row({"digest", fmt::format("{:016x}", result.digest)});
+  table.add({"digest", fmt::format("{:016x}", result.digest)});
   const std::string more = (result.delay.size() > 1 ? many_pulses(result) : "") + bands(result) + forces(result);
   const std::string list = folder + "/: " + file_list(files);
-  if (more.empty()) table.row({"files", list});
+  if (more.empty()) table.add({"files", list});
   return table.text("  ") + (more.empty() ? "" : more + "\n  files  " + list + "\n");
 }
 

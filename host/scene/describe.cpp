@@ -12,9 +12,12 @@
 #include "scene/spectrum.hpp"
 #include "scene/tables.hpp"
 #include "shared/portable.h"
+#include "text/columns.hpp"
 
 namespace clray {
 namespace {
+
+using text::Columns;
 
 std::string vector_text(const Vec3& v) {
   return fmt::format("({:.6g}, {:.6g}, {:.6g})", v.x, v.y, v.z);
@@ -26,30 +29,6 @@ double degrees(double radians) {
 std::string count_text(std::size_t n, const std::string& one) {
   return fmt::format("{} {}{}", n, one, n == 1 ? "" : "s");
 }
-
-/// Lines of cells, every column as wide as its widest cell.
-class Columns {
- public:
-  void add(std::vector<std::string> cells) { rows_.push_back(std::move(cells)); }
-  std::string text(const std::string& indent) const {
-    std::vector<std::size_t> widths;
-    for (const auto& row : rows_) {
-      widths.resize(std::max(widths.size(), row.size()), 0);
-      for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
-    }
-    std::string all;
-    for (const auto& row : rows_) {
-      std::string line = indent;
-      for (std::size_t i = 0; i < row.size(); ++i) line += fmt::format("{:<{}}  ", row[i], widths[i]);
-      line.erase(line.find_last_not_of(' ') + 1);
-      all += line + "\n";
-    }
-    return all;
-  }
-
- private:
-  std::vector<std::vector<std::string>> rows_;
-};
 
 std::string row_text(const TableRow& row, const std::map<std::string, double>& parameters,
                      const std::map<std::string, Spectrum>& spectra = {}) {

@@ -14,6 +14,7 @@
 #include "clray/scene.hpp"
 #include "scene/tables.hpp"
 #include "scene/toml_library.hpp"
+#include "text/near_miss.hpp"
 
 namespace clray {
 
@@ -30,11 +31,7 @@ constexpr Range kPositive{0.0, kInfinity, false, false};
 constexpr Range kNotNegative{0.0, kInfinity, true, false};
 constexpr Range kShare{0.0, 1.0, true, true};
 
-/// The word of `known` nearest to `word` if it is a near miss (at most a third of its letters wrong), else "".
-std::string nearest(const std::string& word, const std::vector<std::string>& known);
-
-/// "; did you mean 'x'?" or "".
-std::string did_you_mean(const std::string& word, const std::vector<std::string>& known);
+using text::did_you_mean;
 
 class TomlTable {
  public:
