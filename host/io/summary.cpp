@@ -189,19 +189,22 @@ Json totals_of(const Writer& writer) {
   return list;
 }
 
-/// The counts of paths; the energies too where they were kept (several bounces or a pressure detector): zeros for what
-/// nobody measured would read as a finding.
-Json energy_of(const EnergyBooks& books) {
-  Json entry{
-      {"started", books.started}, {"escaped", books.escaped}, {"killed", books.killed}, {"capped", books.capped}};
-  if (!(books.incident_m2.value > 0.0)) return entry;
-  entry.update({{"incident_m2", value_and_error(books.incident_m2)},
-                {"reflected_m2", value_and_error(books.reflected_m2)},
-                {"absorbed_m2", value_and_error(books.absorbed_m2)},
-                {"roulette_m2", value_and_error(books.roulette_m2)},
-                {"truncated_m2", value_and_error(books.truncated_m2)},
-                {"unconnected_specular_m2", value_and_error(books.unconnected_specular_m2)}});
-  return entry;
+/// A row per variant and band (and grid of Sun directions) whose paths scatter.
+Json energy_of(const std::vector<EnergyBooks>& all) {
+  Json list = Json::array();
+  for (const EnergyBooks& books : all) {
+    Json entry{{"incident_m2", value_and_error(books.incident_m2)},
+               {"reflected_m2", value_and_error(books.reflected_m2)},
+               {"absorbed_m2", value_and_error(books.absorbed_m2)},
+               {"roulette_m2", value_and_error(books.roulette_m2)},
+               {"truncated_m2", value_and_error(books.truncated_m2)},
+               {"unconnected_specular_m2", value_and_error(books.unconnected_specular_m2)}};
+    if (!books.key.detector.empty()) entry["detector"] = books.key.detector;
+    if (!books.key.variant.empty()) entry["variant"] = books.key.variant;
+    if (!books.key.band.empty()) entry["band"] = books.key.band;
+    list.push_back(entry);
+  }
+  return list;
 }
 
 Json head_of(const Writer& writer) {
@@ -278,6 +281,10 @@ void write_summary(Writer& writer, const std::vector<MoreFiles>& more) {
                             {"below_window", d.below_window_fraction},
                             {"above_window", d.above_window_fraction},
                             {"truncated_energy_fraction", d.truncated_energy_fraction}};
+  summary["paths"] = {{"started", r.paths.started},
+                      {"escaped", r.paths.escaped},
+                      {"killed", r.paths.killed},
+                      {"capped", r.paths.capped}};
   summary["energy"] = energy_of(r.energy);
   if (writer.reference) {
     summary["reference"] = writer.reference->file;

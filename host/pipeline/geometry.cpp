@@ -10,6 +10,7 @@
 #include "clray/error.hpp"
 #include "pipeline/convexity.hpp"
 #include "pipeline/portable_tables.hpp"
+#include "pipeline/raw_primitives.hpp"
 #include "scene/motion.hpp"
 #include "scene/tables.hpp"
 #include "shape/shape.h"
@@ -17,13 +18,6 @@
 
 namespace clray {
 namespace {
-
-/// A primitive before it has its place: nine numbers of a triangle, or a shape's record.
-struct Raw {
-  std::uint32_t data = 0;  // offset in numbers
-  std::uint32_t size = 0;  // how many
-  std::uint32_t shape = 0, material = 0, component = 0, part = 0;
-};
 
 Point rotated(const std::array<double, 9>& m, const Point& x) {
   return {{std::fma(m[0], x[0], std::fma(m[1], x[1], m[2] * x[2])),
@@ -74,9 +68,10 @@ class Packer {
     }
     if (raw_.empty()) throw Error(ErrorCode::input, "nothing to trace: every face has zero area", scene_.path);
     rank();
+    share_planes();
     build_trees();
     bound();
-    g_.convex = g_.parts.size() == 1 && scene_.components.size() == 1 && is_convex();
+    g_.convex = g_.parts.size() == 1 && scene_.components.size() == 1 && !g_.shared_planes && is_convex();
     return std::move(g_);
   }
 
@@ -100,7 +95,7 @@ class Packer {
     std::vector<Point> points(mesh.vertices.size());
     for (std::size_t i = 0; i < points.size(); ++i)
       points[i] = to_body(component.transform, rotation, mesh.vertices[i]);
-    Raw raw;
+    RawPrimitive raw;
     raw.size = 9;
     raw.shape = static_cast<std::uint32_t>(table_index("shape", "mesh"));
     raw.component = index;
@@ -141,7 +136,7 @@ class Packer {
   }
 
   void pack_shape(const Component& component, std::uint32_t index) {
-    Raw raw;
+    RawPrimitive raw;
     const int row = table_index("shape", component.shape);
     if (row < 0) throw Error(ErrorCode::input, "unknown shape \"" + component.shape + "\"", component.name);
     raw.shape = static_cast<std::uint32_t>(row);
@@ -161,7 +156,7 @@ class Packer {
     g_.report.area_m2 += shape_area_of(row, keys.data()) * component.transform.scale * component.transform.scale;
   }
 
-  int compare(const Raw& a, const Raw& b) const {
+  int compare(const RawPrimitive& a, const RawPrimitive& b) const {
     if (a.size != b.size) return a.size < b.size ? -1 : 1;
     for (std::uint32_t k = 0; k < a.size; ++k) {
       if (numbers_[a.data + k] != numbers_[b.data + k]) return numbers_[a.data + k] < numbers_[b.data + k] ? -1 : 1;
@@ -171,7 +166,7 @@ class Packer {
     return 0;
   }
 
-  // Sorts raw_ into canonical order and drops copies: of coincident primitives the first wins every tie anyway.
+  // Sorts raw_ into canonical order and drops copies.
   void rank() {
     struct Key {
       double first;
@@ -182,16 +177,17 @@ class Packer {
     const std::vector<std::uint32_t> material_rank = rank_materials();
     std::sort(keys.begin(), keys.end(), [&](const Key& x, const Key& y) {
       if (x.first != y.first) return x.first < y.first;
-      const Raw &a = raw_[x.index], &b = raw_[y.index];
+      const RawPrimitive &a = raw_[x.index], &b = raw_[y.index];
       if (const int order = compare(a, b)) return order < 0;
       if (a.material != b.material) return material_rank[a.material] < material_rank[b.material];
       return a.component < b.component;
     });
-    std::vector<Raw> sorted;
+    std::vector<RawPrimitive> sorted;
     sorted.reserve(raw_.size());
     for (const Key& key : keys) {
-      const Raw& raw = raw_[key.index];
-      if (sorted.empty() || compare(sorted.back(), raw) != 0) sorted.push_back(raw);
+      const RawPrimitive& raw = raw_[key.index];
+      if (sorted.empty() || sorted.back().material != raw.material || compare(sorted.back(), raw) != 0)
+        sorted.push_back(raw);
     }
     raw_ = std::move(sorted);
   }
@@ -212,7 +208,21 @@ class Packer {
     return rank;
   }
 
-  Box box_of(const Raw& raw) const {
+  void share_planes() {
+    const SharedPlanes found = shared_planes_of(raw_, numbers_);
+    g_.shared_planes = !found.faces.empty();
+    g_.conflicts = found.conflicts;
+    for (const SharedPlane& face : found.faces) {
+      RawPrimitive& raw = raw_[face.primitive];
+      if (raw.planes == CLRAY_NO_PLANES) {
+        raw.planes = static_cast<std::uint32_t>(planes_.size());
+        planes_.resize(planes_.size() + CLRAY_PLANE_SIZE * parts_of(raw), 0.0);
+      }
+      std::copy(face.record.begin(), face.record.end(), planes_.begin() + raw.planes + CLRAY_PLANE_SIZE * face.part);
+    }
+  }
+
+  Box box_of(const RawPrimitive& raw) const {
     Box box;
     const double* d = numbers_.data() + raw.data;
     if (raw.size == 9) {
@@ -259,7 +269,7 @@ class Packer {
     }
   }
 
-  void append(const Raw& raw, std::uint32_t id, std::vector<bool>& used) {
+  void append(const RawPrimitive& raw, std::uint32_t id, std::vector<bool>& used) {
     ClrayPrimitive primitive{};
     primitive.shape = raw.shape;
     primitive.data = static_cast<std::uint32_t>(g_.shapes.size());
@@ -276,6 +286,12 @@ class Packer {
       g_.parts[raw.part].shape_rows.push_back(static_cast<int>(raw.shape));
     }
     g_.shapes.insert(g_.shapes.end(), d, d + raw.size);
+    primitive.planes = CLRAY_NO_PLANES;
+    if (raw.planes != CLRAY_NO_PLANES) {
+      primitive.planes = static_cast<std::uint32_t>(g_.shapes.size());
+      g_.shapes.insert(g_.shapes.end(), planes_.begin() + raw.planes,
+                       planes_.begin() + raw.planes + CLRAY_PLANE_SIZE * parts_of(raw));
+    }
     g_.primitives.push_back(primitive);
     used[raw.shape] = true;
   }
@@ -326,8 +342,9 @@ class Packer {
 
   const Scene& scene_;
   Geometry g_;
-  std::vector<Raw> raw_;
+  std::vector<RawPrimitive> raw_;
   std::vector<double> numbers_;
+  std::vector<double> planes_;
 };
 
 }  // namespace

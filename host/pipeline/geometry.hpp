@@ -43,6 +43,8 @@ struct Geometry {
   std::vector<std::uint32_t> part_of_component;
   std::uint32_t stack_needed = 1;  ///< of the deepest tree
   bool convex = false;             ///< nothing outside can be hidden by the body itself
+  bool shared_planes = false;      ///< faces overlap in one plane
+  std::uint64_t conflicts = 0;     ///< pairs of them that look the same way with different materials
   MeshReport report;
   Point centre{{0, 0, 0}};  ///< of the bounding sphere over all hinge angles
   double radius = 0.0;

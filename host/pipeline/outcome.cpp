@@ -3,6 +3,7 @@
 #include "pipeline/outcome.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -104,12 +105,10 @@ class Writer {
       : scene_(scene), plan_(plan), outcome_(outcome), read_(plan, outcome.sums), out_(*out) {}
 
   void write() {
-    first_orientation_ = plan_.grid ? out_.orientations.size() : 0;
-    if (plan_.grid) {
-      out_.orientations.insert(out_.orientations.end(), plan_.orientations.begin(), plan_.orientations.end());
-    } else if (out_.orientations.empty()) {
-      out_.orientations = plan_.orientations;
-    }
+    const std::size_t end = plan_.first_orientation + plan_.orientations.size();
+    if (out_.orientations.size() < end) out_.orientations.resize(end);
+    std::copy(plan_.orientations.begin(), plan_.orientations.end(),
+              out_.orientations.begin() + static_cast<std::ptrdiff_t>(plan_.first_orientation));
     for (std::size_t v = 0; v < plan_.views.size(); ++v) {
       if (plan_.pixels) pictures(v);
       for (std::size_t l = 0; l < plan_.lanes.size() && !plan_.pixels; ++l) {
@@ -132,7 +131,7 @@ class Writer {
     if (scene_.observers.size() > 1 && !plan_.grid) k.observer = scene_.observers[c].name;
     k.variant = plan_.lanes[l].variant;
     k.band = plan_.lanes[l].band_name;
-    k.orientation = first_orientation_ + v;
+    k.orientation = plan_.first_orientation + v;
     return k;
   }
 
@@ -219,20 +218,33 @@ class Writer {
     out_.pressure.push_back(std::move(p));
   }
 
-  // Books of lane 0, averaged over the views.
+  // Per lane, the mean over the views. Another pass may have kept the books of the same light.
   void energy() {
-    Estimate* entries[CLRAY_BOOKS] = {&out_.energy.incident_m2,  &out_.energy.reflected_m2,
-                                      &out_.energy.absorbed_m2,  &out_.energy.roulette_m2,
-                                      &out_.energy.truncated_m2, &out_.energy.unconnected_specular_m2};
-    for (int book = 0; book < CLRAY_BOOKS; ++book) {
-      *entries[book] = estimate_mean(per_replicate(plan_, [&](std::uint32_t r) {
-        double sum = 0.0;
-        for (std::size_t v = 0; v < plan_.views.size(); ++v) sum += read_.book(v, 0, r, book);
-        return sum / static_cast<double>(plan_.views.size());
-      }));
+    for (std::size_t l = 0; l < plan_.lanes.size(); ++l) {
+      EnergyBooks e;
+      if (plan_.grid) e.key.detector = key(plan_.pressure_detector, 0, l, 0).detector;
+      e.key.variant = plan_.lanes[l].variant;
+      e.key.band = plan_.lanes[l].band_name;
+      if (std::any_of(out_.energy.begin(), out_.energy.end(), [&](const EnergyBooks& known) {
+            return known.key.detector == e.key.detector && known.key.variant == e.key.variant &&
+                   known.key.band == e.key.band;
+          }))
+        continue;
+      Estimate* entries[CLRAY_BOOKS] = {&e.incident_m2, &e.reflected_m2, &e.absorbed_m2,
+                                        &e.roulette_m2, &e.truncated_m2, &e.unconnected_specular_m2};
+      for (int book = 0; book < CLRAY_BOOKS; ++book) {
+        *entries[book] = estimate_mean(per_replicate(plan_, [&](std::uint32_t r) {
+          double sum = 0.0;
+          for (std::size_t v = 0; v < plan_.views.size(); ++v) sum += read_.book(v, l, r, book);
+          return sum / static_cast<double>(plan_.views.size());
+        }));
+      }
+      if (e.incident_m2.value > 0.0) {
+        double& fraction = out_.diagnostics.truncated_energy_fraction;
+        fraction = std::max(fraction, e.truncated_m2.value / e.incident_m2.value);
+      }
+      out_.energy.push_back(std::move(e));
     }
-    if (out_.energy.incident_m2.value > 0.0)
-      out_.diagnostics.truncated_energy_fraction = out_.energy.truncated_m2.value / out_.energy.incident_m2.value;
   }
 
   void pictures(std::size_t v) {
@@ -284,10 +296,10 @@ class Writer {
     out_.diagnostics.stack_overflow += n[CLRAY_COUNT_STACK];
     out_.diagnostics.lost_rays += n[CLRAY_COUNT_LOST];
     out_.diagnostics.accumulator_overflow += n[CLRAY_COUNT_OVERFLOW];
-    out_.energy.started += n[CLRAY_COUNT_STARTED];
-    out_.energy.escaped += n[CLRAY_COUNT_ESCAPED];
-    out_.energy.killed += n[CLRAY_COUNT_KILLED];
-    out_.energy.capped += n[CLRAY_COUNT_CAPPED];
+    out_.paths.started += n[CLRAY_COUNT_STARTED];
+    out_.paths.escaped += n[CLRAY_COUNT_ESCAPED];
+    out_.paths.killed += n[CLRAY_COUNT_KILLED];
+    out_.paths.capped += n[CLRAY_COUNT_CAPPED];
   }
 
   const Scene& scene_;
@@ -295,10 +307,50 @@ class Writer {
   const PassOutcome& outcome_;
   SumReader read_;
   Result& out_;
-  std::size_t first_orientation_ = 0;
 };
 
 }  // namespace
+
+namespace {
+
+/// Places of names in the scene's own order.
+class Places {
+ public:
+  explicit Places(const Scene& scene) {
+    for (const DetectorSpec& d : scene.detectors) detectors_.push_back(d.name.empty() ? d.kind : d.name);
+    for (const Observer& o : scene.observers) observers_.push_back(o.name);
+    for (const Variant& v : scene.variants) variants_.push_back(v.name);
+    for (const Lane& lane : lanes_of(scene)) bands_.push_back(lane.band_name);
+  }
+  std::array<std::size_t, 5> of(const ResultKey& k, bool by_detector) const {
+    const std::size_t detector = place(detectors_, k.detector), observer = place(observers_, k.observer);
+    const std::size_t variant = place(variants_, k.variant), band = place(bands_, k.band);
+    if (by_detector) return {{detector, observer, k.orientation, variant, band}};
+    return {{k.orientation, variant, band, observer, detector}};
+  }
+
+ private:
+  static std::size_t place(const std::vector<std::string>& names, const std::string& name) {
+    return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+  }
+  std::vector<std::string> detectors_, observers_, variants_, bands_;
+};
+
+}  // namespace
+
+void order_results(const Scene& scene, Result* result) {
+  const Places places(scene);
+  const auto order = [&](auto& records, bool by_detector) {
+    std::stable_sort(records.begin(), records.end(), [&](const auto& a, const auto& b) {
+      return places.of(a.key, by_detector) < places.of(b.key, by_detector);
+    });
+  };
+  order(result->delay, false);
+  order(result->spectrometer, false);
+  order(result->pressure, false);
+  order(result->energy, true);
+  order(result->image, true);
+}
 
 void add_results(const Scene& scene, const PassPlan& plan, const PassOutcome& outcome, Result* result) {
   Writer(scene, plan, outcome, result).write();

@@ -43,6 +43,10 @@ void largest_error(const std::vector<Target>& targets, ErrorPoint* point);
 /// Appends what the pass found to the result's detectors, energy books and diagnostics.
 void add_results(const Scene& scene, const PassPlan& plan, const PassOutcome& outcome, Result* result);
 
+/// Puts the records of all passes in the order of the scene: orientation, variant, band, observer, detector (pictures
+/// and books: detector and observer first).
+void order_results(const Scene& scene, Result* result);
+
 /// Digest of a pass's sums, continued from `state`.
 std::uint64_t digest_of(std::uint64_t state, const PassPlan& plan, const Sums& sums);
 

@@ -10,19 +10,11 @@
 #include "clray/error.hpp"
 #include "pipeline/beam_strata.hpp"
 #include "pipeline/views.hpp"
-#include "scene/motion.hpp"
 #include "scene/tables.hpp"
 
 namespace clray {
-namespace {
 
-constexpr double kNsToMetres = 0.299792458;
-
-const DetectorSpec& spec_of(const Scene& scene, int index) {
-  return scene.detectors[index];
-}
-
-double value_of(const DetectorSpec& spec, const std::string& key) {
+double detector_value(const DetectorSpec& spec, const std::string& key) {
   const TableRow& row = table("detector")[table_index("detector", spec.kind)];
   const std::vector<double> values = row_values(row, spec.parameters);
   for (std::size_t k = 0; k < row.keys.size(); ++k) {
@@ -30,6 +22,10 @@ double value_of(const DetectorSpec& spec, const std::string& key) {
   }
   throw Error(ErrorCode::bug, "detector " + spec.kind + " has no key " + key);
 }
+
+namespace {
+
+constexpr double kNsToMetres = 0.299792458;
 
 /// Planning one pass, step by step.
 class Planner {
@@ -72,9 +68,9 @@ class Planner {
       if (spec.kind != "delay") continue;
       DelayPlan delay;
       delay.detector = static_cast<int>(d);
-      delay.bins = static_cast<std::uint32_t>(value_of(spec, "bins"));
-      const double start_ns = value_of(spec, "start_ns"), stop_ns = value_of(spec, "stop_ns");
-      const double bin_ps = value_of(spec, "bin_ps");
+      delay.bins = static_cast<std::uint32_t>(detector_value(spec, "bins"));
+      const double start_ns = detector_value(spec, "start_ns"), stop_ns = detector_value(spec, "stop_ns");
+      const double bin_ps = detector_value(spec, "bin_ps");
       for (std::uint32_t c = 0; c < p_.connections; ++c) {
         const double extent = high[c] - low[c];
         const double margin = std::max(extent / std::max(1.0, delay.bins - 2.0), least);
@@ -252,6 +248,8 @@ void Planner::specialise() {
   decide("CLRAY_DELTA", p_.surfaces.delta, "ideal reflections", "a mirror is in the scene", "no mirror in the scene");
   decide("CLRAY_ONE_SIDED", p_.surfaces.one_sided, "black backs", "a material is one-sided",
          "every material reflects from both sides");
+  decide("CLRAY_PLANES", geometry_.shared_planes, "faces in one plane",
+         "some overlap: the one that faces the ray is hit", "no faces overlap in one plane");
   decide("CLRAY_INSTANCED", moving_parts, "moving parts and their transforms", "a component is hinged",
          "no component is hinged; fixed transforms are done once on the host");
   decide("CLRAY_WIDE", p_.scatter || bistatic || !bounded, "second accumulator",
@@ -281,112 +279,10 @@ void Planner::specialise() {
   size("CLRAY_STACK", all || stack > 96 ? 192 : stack > 48 ? 96 : stack > 24 ? 48 : 24);
 }
 
-PassPlan beam_plan(const Scene& scene, const std::vector<Lane>& lanes) {
-  PassPlan plan;
-  plan.phase = "trace";
-  plan.orientations = orientations(scene);
-  plan.lanes = lanes;
-  plan.connections = static_cast<std::uint32_t>(scene.observers.size());
-  plan.replicates = static_cast<std::uint32_t>(scene.trace.replicates);
-  return plan;
-}
-
-/// Wavelengths of a picture traced at once: what a hit costs is paid once for all of them. Their sums stay within a
-/// quarter of a GiB, whatever the device, so that the digest is the same on all; the rest goes in further chunks.
-std::size_t lanes_together(const DetectorSpec& spec, std::size_t views) {
-  const double pixels = value_of(spec, "width") * value_of(spec, "height") * static_cast<double>(views);
-  const double lanes = 0x1p28 / (pixels * 2.0 * sizeof(std::int64_t));
-  return static_cast<std::size_t>(std::min(64.0, std::max(1.0, lanes)));
-}
-
-/// Directions of the Sun on a grid: azimuth from +x toward +y, elevation from the xy plane, degrees' midpoints
-/// excluded: elevations run from -90 to 90 inclusive, azimuths from 0 to 360 exclusive.
-std::vector<Orientation> sun_grid(const Scene& scene, int azimuths, int elevations);
-
 }  // namespace
 
-std::vector<PassPlan> plan_passes(const Scene& scene, const Geometry& geometry) {
-  std::vector<PassPlan> passes;
-  bool connect = false;
-  int pressure = -1;
-  for (std::size_t d = 0; d < scene.detectors.size(); ++d) {
-    const std::string& kind = scene.detectors[d].kind;
-    if (kind == "delay" || kind == "spectrometer") connect = true;
-    if (kind == "pressure") pressure = static_cast<int>(d);
-  }
-  const bool grid = pressure >= 0 && value_of(spec_of(scene, pressure), "azimuth_steps") > 0.0;
-  const std::vector<Lane> lanes = lanes_of(scene);
-  if (connect || (pressure >= 0 && !grid)) {
-    PassPlan plan = beam_plan(scene, lanes);
-    plan.connect = connect;
-    plan.pressure = pressure >= 0 && !grid;
-    if (plan.pressure) plan.pressure_detector = pressure;
-    plan.thermal = plan.pressure && value_of(spec_of(scene, pressure), "thermal") != 0.0;
-    // Scattered directions are drawn for one material: variants that scatter are traced one by one.
-    const bool mirrors = build_surfaces(scene, lanes, false, false).delta;
-    if (scene.variants.size() > 1 && (scene.trace.max_bounces > 1 || plan.pressure || mirrors)) {
-      const std::size_t bands = lanes.size() / scene.variants.size();
-      for (std::size_t v = 0; v < scene.variants.size(); ++v) {
-        PassPlan one = plan;
-        one.lanes.assign(lanes.begin() + v * bands, lanes.begin() + (v + 1) * bands);
-        passes.push_back(Planner(scene, geometry, std::move(one)).finish());
-      }
-    } else {
-      passes.push_back(Planner(scene, geometry, std::move(plan)).finish());
-    }
-  }
-  if (grid) {
-    PassPlan plan = beam_plan(scene, {lanes.front()});
-    plan.phase = "sun directions";
-    plan.grid = plan.pressure = true;
-    plan.pressure_detector = pressure;
-    plan.connections = 1;
-    plan.thermal = value_of(spec_of(scene, pressure), "thermal") != 0.0;
-    plan.orientations = sun_grid(scene, static_cast<int>(value_of(spec_of(scene, pressure), "azimuth_steps")),
-                                 static_cast<int>(value_of(spec_of(scene, pressure), "elevation_steps")));
-    passes.push_back(Planner(scene, geometry, std::move(plan)).finish());
-  }
-  for (std::size_t d = 0; d < scene.detectors.size(); ++d) {
-    const DetectorSpec& spec = scene.detectors[d];
-    if (table("detector")[table_index("detector", spec.kind)].side != "pixel") continue;
-    for (std::size_t o = 0; o < scene.observers.size(); ++o) {
-      const std::size_t chunk = lanes_together(spec, orientations(scene).size());
-      for (std::size_t first = 0; first < lanes.size(); first += chunk) {
-        PassPlan plan =
-            beam_plan(scene, {lanes.begin() + first, lanes.begin() + std::min(lanes.size(), first + chunk)});
-        plan.phase = "pictures";
-        plan.pixels = plan.connect = true;
-        plan.pixel_detector = static_cast<int>(d);
-        plan.pixel_observer = static_cast<int>(o);
-        plan.connections = 1;
-        plan.replicates = 2;
-        plan.width = static_cast<std::uint32_t>(value_of(spec, "width"));
-        plan.height = static_cast<std::uint32_t>(value_of(spec, "height"));
-        plan.picture_samples = static_cast<std::uint32_t>(value_of(spec, "samples"));
-        passes.push_back(Planner(scene, geometry, std::move(plan)).finish());
-      }
-    }
-  }
-  return passes;
+PassPlan plan_pass(const Scene& scene, const Geometry& geometry, PassPlan plan) {
+  return Planner(scene, geometry, std::move(plan)).finish();
 }
 
-namespace {
-
-std::vector<Orientation> sun_grid(const Scene& scene, int azimuths, int elevations) {
-  std::vector<Orientation> grid;
-  elevations = std::max(elevations, 2);
-  for (int e = 0; e < elevations; ++e) {
-    const double elevation = -90.0 + 180.0 * e / (elevations - 1);
-    const bool pole = e == 0 || e == elevations - 1;
-    for (int a = 0; a < (pole ? 1 : azimuths); ++a) {
-      Orientation orientation;
-      orientation.source = direction_from_degrees(360.0 * a / azimuths, elevation);
-      orientation.observers.assign(scene.observers.size(), orientation.source);
-      grid.push_back(orientation);
-    }
-  }
-  return grid;
-}
-
-}  // namespace
 }  // namespace clray

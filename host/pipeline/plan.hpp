@@ -28,6 +28,7 @@ struct PassPlan {
   bool pixels = false;                    ///< rays start at pixels, else at the beam
   std::string phase;                      ///< for progress
   std::vector<Orientation> orientations;  ///< one per view; of a grid of Sun directions its own
+  std::size_t first_orientation = 0;      ///< where they stand in Result::orientations
   std::vector<Lane> lanes;
   Surfaces surfaces;
   std::uint32_t connections = 1;  ///< observers of a beam; 1 (the source) for pixels
@@ -63,5 +64,11 @@ struct PassPlan {
 
 /// All passes of a scene. Throws Error(input) for what cannot be traced.
 std::vector<PassPlan> plan_passes(const Scene& scene, const Geometry& geometry);
+
+/// Fills in what follows from the scene and the plan's detectors, lanes and orientations.
+PassPlan plan_pass(const Scene& scene, const Geometry& geometry, PassPlan plan);
+
+/// A key of a detector, or its default.
+double detector_value(const DetectorSpec& spec, const std::string& key);
 
 }  // namespace clray

@@ -51,4 +51,11 @@ int shape_traits_of(int shape, const double* keys) {
   return portable::shape_traits(static_cast<u32>(shape), keys);
 }
 
+bool shape_flat_part(int shape, const double* keys, std::uint32_t part, FlatPart* flat) {
+  portable::ShapeFacet facet{};
+  if (!portable::shape_facet(static_cast<u32>(shape), keys, part, &facet)) return false;
+  *flat = {static_cast<int>(facet.axis), facet.side, facet.offset, facet.round != 0, facet.a, facet.b};
+  return true;
+}
+
 }  // namespace clray

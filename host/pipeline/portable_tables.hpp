@@ -3,6 +3,7 @@
 // areas and directional reflectances.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "shared/abi.h"
@@ -26,5 +27,15 @@ bool shape_hit_of(int shape, const double* keys, vec3 o, vec3 d, double* t, vec3
 double shape_area_of(int shape, const double* keys);
 /// CLRAY_SHAPE_CLOSED | CLRAY_SHAPE_CONVEX | CLRAY_SHAPE_PLANE
 int shape_traits_of(int shape, const double* keys);
+
+/// A flat part of a shape in its local frame: see ShapeFacet in kernels/shape/shape.h.
+struct FlatPart {
+  int axis = 2;
+  double side = 1.0, offset = 0.0;
+  bool round = false;
+  double a = 0.0, b = 0.0;
+};
+/// Whether `part` of a shape is flat and there, and where.
+bool shape_flat_part(int shape, const double* keys, std::uint32_t part, FlatPart* flat);
 
 }  // namespace clray

@@ -61,13 +61,18 @@ class Rasteriser {
     return static_cast<int>(std::clamp(std::floor(x), 0.0, static_cast<double>(n_ - 1)));
   }
 
-  /// Equally near surfaces go to the smaller canonical id, as hits do: no order of work matters.
+  /// Equally near surfaces go to the one whose front is seen, then to the smaller canonical id, as hits do.
   void mark(std::size_t at, BeamCell::State state, double w, const vec3& normal) {
     BeamCell& cell = cells_[at];
     if (state < cell.state) return;
     if (state == cell.state) {
-      if (w < cell.w) return;
-      if (w == cell.w && geometry_.primitives[primitive_].id > geometry_.primitives[cell.primitive].id) return;
+      const double same = geometry_.shared_planes ? 1e-12 * geometry_.radius : 0.0;
+      if (w < cell.w - same) return;
+      if (w <= cell.w + same) {
+        const bool back = normal.z < 0.0;
+        if (back != cell.back ? back : geometry_.primitives[primitive_].id > geometry_.primitives[cell.primitive].id)
+          return;
+      }
     }
     cell.state = state;
     cell.primitive = primitive_;

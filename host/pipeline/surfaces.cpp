@@ -8,6 +8,7 @@
 
 #include "clray/error.hpp"
 #include "pipeline/portable_tables.hpp"
+#include "pipeline/reflectance.hpp"
 #include "scene/spectrum.hpp"
 #include "scene/tables.hpp"
 
@@ -52,12 +53,44 @@ std::vector<Lane> lanes_of(const Scene& scene) {
   return lanes;
 }
 
+std::vector<std::vector<Lane>> lane_groups(const Scene& scene, const std::vector<Lane>& lanes, bool scatter,
+                                           std::size_t most) {
+  constexpr std::size_t kMostTogether = 8;  // that share directions: a weight is at most so many times a lane's own
+  struct Group {
+    std::vector<bool> two_sided;
+    int variant;
+    bool delta;
+    std::vector<Lane> lanes;
+  };
+  std::vector<Group> groups;
+  for (const Lane& lane : lanes) {
+    Group one{{}, lane.variant_index, build_surfaces(scene, {lane}, false, false).delta, {lane}};
+    for (const Material& base : scene.materials) one.two_sided.push_back(material_of(scene, lane, base).two_sided);
+    const auto fits = [&](const Group& group) {
+      if (one.delta || group.delta || group.two_sided != one.two_sided) return false;
+      if (scatter && (group.variant != one.variant || group.lanes.size() == kMostTogether)) return false;
+      return group.lanes.size() < most;
+    };
+    // The last that fits: earlier ones are full.
+    const auto found = std::find_if(groups.rbegin(), groups.rend(), fits);
+    if (found == groups.rend()) {
+      groups.push_back(std::move(one));
+    } else {
+      found->lanes.push_back(lane);
+    }
+  }
+  std::vector<std::vector<Lane>> out;
+  for (Group& group : groups) out.push_back(std::move(group.lanes));
+  return out;
+}
+
 Surfaces build_surfaces(const Scene& scene, const std::vector<Lane>& lanes, bool reflectance, bool thermal) {
   Surfaces s;
   s.columns = static_cast<std::uint32_t>(scene.materials.size());
   std::vector<bool> used(table("brdf").size(), false);
   std::map<const BrdfTable*, std::uint32_t> placed;
   std::map<std::vector<double>, std::uint32_t> known;  // reflectance tables by what they depend on
+  const std::vector<double> none;
   for (const Lane& lane : lanes) {
     for (const Material& base : scene.materials) {
       const Material& m = material_of(scene, lane, base);
@@ -83,9 +116,8 @@ Surfaces build_surfaces(const Scene& scene, const std::vector<Lane>& lanes, bool
         if (found != known.end()) {
           out.reflectance = found->second;
         } else {
-          std::vector<double> nodes(CLRAY_REFLECTANCE_NODES);
-          for (int k = 0; k < CLRAY_REFLECTANCE_NODES; ++k)
-            nodes[k] = surface_reflectance(out, s.tables, std::max(1e-9, k / (CLRAY_REFLECTANCE_NODES - 1.0)));
+          const std::vector<double> nodes = reflectance_table(
+              [&](double mu) { return surface_reflectance(out, s.tables, mu); }, m.table ? m.table->theta_i_rad : none);
           out.reflectance = known[key] = static_cast<std::uint32_t>(s.tables.size());
           s.tables.insert(s.tables.end(), nodes.begin(), nodes.end());
         }

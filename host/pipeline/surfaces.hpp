@@ -31,6 +31,12 @@ struct Surfaces {
 /// Every (variant, band) of the scene, variants outermost.
 std::vector<Lane> lanes_of(const Scene& scene);
 
+/// Lanes that one pass can trace, in groups of at most `most`; the scene's order is kept. What decides whether a face
+/// is hit (its lit sides) is one for a whole pass. Where paths `scatter`, lanes share their directions: the bands of
+/// one variant, 8 at most, and a lane with ideal reflections goes alone.
+std::vector<std::vector<Lane>> lane_groups(const Scene& scene, const std::vector<Lane>& lanes, bool scatter,
+                                           std::size_t most);
+
 /// Materials of `lanes`; `reflectance`: tables of directional reflectance too; `thermal`: emissivities too.
 Surfaces build_surfaces(const Scene& scene, const std::vector<Lane>& lanes, bool reflectance, bool thermal);
 

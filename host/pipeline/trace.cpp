@@ -350,6 +350,12 @@ Result trace(const Scene& scene, Device& device, const TraceHooks& hooks) {
   result.seconds.trace = spent;
   result.seconds.total = now() - start;
   check_diagnostics(result, scene.trace.allow_failures);
+  order_results(scene, &result);
+  if (geometry.conflicts != 0)
+    result.warnings.push_back(
+        fmt::format("{} pairs of faces of different materials overlap in one plane and look the same way: the first in "
+                    "canonical order is hit; remove one of each",
+                    geometry.conflicts));
   std::vector<std::string> early = std::move(result.warnings);
   add_warnings(scene, ending, &result);
   result.warnings.insert(result.warnings.end(), early.begin(), early.end());

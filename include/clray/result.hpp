@@ -101,10 +101,17 @@ struct ImageResult {
   std::vector<double> standard_error_per_sr;  ///< same shape
 };
 
-/// Energy books of a run with bounces, as shares of the incident energy (PHYSICS section 4).
+/// Energy books of one variant and band where paths scatter, as power over irradiance, the mean over the orientations
+/// (PHYSICS section 4). Of a grid of Sun directions, the mean over the grid; `key.detector` then names its detector,
+/// else it is empty.
 struct EnergyBooks {
+  ResultKey key;
   Estimate incident_m2, reflected_m2, absorbed_m2, roulette_m2, truncated_m2, unconnected_specular_m2;
-  std::uint64_t started = 0, escaped = 0, killed = 0, capped = 0;  ///< exact: started = the sum of the others
+};
+
+/// Paths of all passes, exact: started is the sum of the others.
+struct PathCounts {
+  std::uint64_t started = 0, escaped = 0, killed = 0, capped = 0;
 };
 
 /// One point of error against run time.
@@ -150,7 +157,8 @@ struct Result {
   MeshReport mesh;        ///< all meshes together
   Seconds seconds;
   Diagnostics diagnostics;
-  EnergyBooks energy;
+  PathCounts paths;
+  std::vector<EnergyBooks> energy;          ///< in the order of variants and bands; empty where no path scatters
   std::vector<std::string> kept, left_out;  ///< decisions of specialisation, each with its reason
   std::vector<std::string> warnings;
   std::vector<ErrorPoint> errors;

@@ -57,4 +57,14 @@ CLRAY_FN i32 shape_box_traits(const CLRAY_GLOBAL f64* p) {
   return CLRAY_SHAPE_CLOSED | CLRAY_SHAPE_CONVEX;
 }
 
+#ifndef __OPENCL_VERSION__
+CLRAY_FN i32 shape_box_facet(const f64* p, u32 part, ShapeFacet* facet) {
+  if (part >= 6u) return 0;
+  const u32 axis = part / 2u;
+  const f64 side = part % 2u != 0u ? 1.0 : -1.0;
+  *facet = shape_facet_of(axis, side, 0.5 * side * p[axis], 0u, 0.5 * p[(axis + 1u) % 3u], 0.5 * p[(axis + 2u) % 3u]);
+  return 1;
+}
+#endif
+
 #endif

@@ -123,4 +123,12 @@ CLRAY_FN i32 shape_cone_traits(const CLRAY_GLOBAL f64* p) {
   return p[3] != 0.0 ? CLRAY_SHAPE_CLOSED | CLRAY_SHAPE_CONVEX : 0;
 }
 
+#ifndef __OPENCL_VERSION__
+CLRAY_FN i32 shape_cone_facet(const f64* p, u32 part, ShapeFacet* facet) {
+  const f64 radius = part == 1u ? p[0] : p[2];
+  *facet = shape_facet_of(2u, part == 1u ? -1.0 : 1.0, part == 1u ? 0.0 : p[1], 1u, radius, 0.0);
+  return p[3] != 0.0 && (part == 1u || part == 2u) && radius > 0.0;
+}
+#endif
+
 #endif

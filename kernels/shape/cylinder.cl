@@ -45,4 +45,12 @@ CLRAY_FN i32 shape_cylinder_traits(const CLRAY_GLOBAL f64* p) {
   return p[2] != 0.0 ? CLRAY_SHAPE_CLOSED | CLRAY_SHAPE_CONVEX : 0;
 }
 
+#ifndef __OPENCL_VERSION__
+CLRAY_FN i32 shape_cylinder_facet(const f64* p, u32 part, ShapeFacet* facet) {
+  const f64 side = part == 1u ? -1.0 : 1.0;
+  *facet = shape_facet_of(2u, side, 0.5 * side * p[1], 1u, p[0], 0.0);
+  return p[2] != 0.0 && (part == 1u || part == 2u);
+}
+#endif
+
 #endif

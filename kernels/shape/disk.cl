@@ -40,4 +40,11 @@ CLRAY_FN i32 shape_disk_traits(const CLRAY_GLOBAL f64* p) {
   return CLRAY_SHAPE_CONVEX | CLRAY_SHAPE_PLANE;
 }
 
+#ifndef __OPENCL_VERSION__
+CLRAY_FN i32 shape_disk_facet(const f64* p, u32 part, ShapeFacet* facet) {
+  *facet = shape_facet_of(2u, 1.0, 0.0, 1u, p[0], p[1]);
+  return part == 0u;
+}
+#endif
+
 #endif

@@ -98,4 +98,18 @@ CLRAY_FN i32 shape_traits(u32 shape, const CLRAY_GLOBAL f64* p) {
 #endif
 }
 
+#ifndef __OPENCL_VERSION__
+CLRAY_FN i32 shape_facet(u32 shape, const f64* p, u32 part, ShapeFacet* facet) {
+  switch (shape) {
+#define CLRAY_SHAPE_CASE(id) \
+  case CLRAY_SHAPE_##id:     \
+    return shape_##id##_facet(p, part, facet);
+    CLRAY_SHAPES(CLRAY_SHAPE_CASE)
+#undef CLRAY_SHAPE_CASE
+    default:
+      return 0;
+  }
+}
+#endif
+
 #endif

@@ -85,4 +85,13 @@ CLRAY_FN i32 shape_paraboloid_traits(const CLRAY_GLOBAL f64* p) {
   return 0;
 }
 
+#ifndef __OPENCL_VERSION__
+CLRAY_FN i32 shape_paraboloid_facet(const f64* p, u32 part, ShapeFacet* facet) {
+  (void)p;
+  (void)part;
+  (void)facet;
+  return 0;
+}
+#endif
+
 #endif

@@ -39,4 +39,11 @@ CLRAY_FN i32 shape_rectangle_traits(const CLRAY_GLOBAL f64* p) {
   return CLRAY_SHAPE_CONVEX | CLRAY_SHAPE_PLANE;
 }
 
+#ifndef __OPENCL_VERSION__
+CLRAY_FN i32 shape_rectangle_facet(const f64* p, u32 part, ShapeFacet* facet) {
+  *facet = shape_facet_of(2u, 1.0, 0.0, 0u, 0.5 * p[0], 0.5 * p[1]);
+  return part == 0u;
+}
+#endif
+
 #endif

@@ -12,6 +12,22 @@ typedef struct ShapeSurface {
   f64 error;     // bound of |computed point - exact surface|, m, in the local frame
 } ShapeSurface;
 
+#ifndef __OPENCL_VERSION__
+/// A flat part of a shape, in its local frame: a rectangle or an annulus across an axis.
+typedef struct ShapeFacet {
+  u32 axis;    // of its normal: 0 x, 1 y, 2 z
+  f64 side;    // 1 or -1: its front looks along that axis, or against it
+  f64 offset;  // m, where it stands on that axis
+  u32 round;   // 0: a rectangle about the axis, 1: an annulus about it
+  f64 a, b;    // m: half the sizes along the next axis and the one after it, or the outer and the inner radius
+} ShapeFacet;
+
+CLRAY_FN ShapeFacet shape_facet_of(u32 axis, f64 side, f64 offset, u32 round, f64 a, f64 b) {
+  const ShapeFacet f = {axis, side, offset, round, a, b};
+  return f;
+}
+#endif
+
 // A shape X is one file shape/X.cl that defines, for parameters p in the order of its row:
 //   i32 shape_X_intersect(p, o, d, t_max, &t, &part)  nearest hit with 0 < t <= t_max of the ray o + t·d (d of unit
 //                                                    length to rounding): 1 and t and the part (u32), or 0
@@ -21,6 +37,7 @@ typedef struct ShapeSurface {
 //   i32 shape_X_traits(p)                            CLRAY_SHAPE_CLOSED | CLRAY_SHAPE_CONVEX (its surface bounds a convex
 //                                                    body or lies in a plane) | CLRAY_SHAPE_PLANE (no ray leaving it can
 //                                                    hit it again)
+//   i32 shape_X_facet(p, part, &facet)                whether that part is flat and there, and which face it is (host)
 // with `const CLRAY_GLOBAL f64 *p`. A ray that starts on the outside, moved off by `error` along the normal, must not
 // hit the same spot again: signs of the constant term of a quadratic are to be exact there. `error` therefore also
 // covers the rounding of point ± normal·error and of the next test; carrying points between frames is the caller's.

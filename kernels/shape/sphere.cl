@@ -49,4 +49,13 @@ CLRAY_FN i32 shape_sphere_traits(const CLRAY_GLOBAL f64* p) {
   return CLRAY_SHAPE_CLOSED | CLRAY_SHAPE_CONVEX;
 }
 
+#ifndef __OPENCL_VERSION__
+CLRAY_FN i32 shape_sphere_facet(const f64* p, u32 part, ShapeFacet* facet) {
+  (void)p;
+  (void)part;
+  (void)facet;
+  return 0;
+}
+#endif
+
 #endif

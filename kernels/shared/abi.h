@@ -8,7 +8,6 @@
 #include "shared/portable.h"
 
 #define CLRAY_MATERIAL_PARAMETERS 12
-#define CLRAY_REFLECTANCE_NODES 129  // of a directional-reflectance table, uniform in mu from 0 to 1
 
 #define CLRAY_MATERIAL_TWO_SIDED 1u
 #define CLRAY_PRIMITIVE_PLANE 1u  // no ray leaving it can hit it again
@@ -18,7 +17,7 @@ typedef struct ClrayMaterial {
   u32 model;        // row number in brdf.def
   u32 flags;        // CLRAY_MATERIAL_*
   u32 table;        // offset of the model's own table in `tables`
-  u32 reflectance;  // offset of the directional-reflectance table in `tables`
+  u32 reflectance;  // offset of the directional-reflectance table in `tables`: count, its mu (ascending), its values
   f64 emissivity;   // infrared, 0 unless thermal re-radiation is asked for
   f64 p[CLRAY_MATERIAL_PARAMETERS];
 } ClrayMaterial;
@@ -31,7 +30,18 @@ typedef struct ClrayPrimitive {
   u32 id;         // canonical rank: ties go to the smaller
   u32 component;  // index into Scene::components
   u32 flags;      // CLRAY_PRIMITIVE_*
+  u32 planes;     // offset in `shapes` of the planes of its flat parts; CLRAY_NO_PLANES: it shares none with another face
+  u32 padding;
 } ClrayPrimitive;
+#define CLRAY_NO_PLANES 0xffffffffu
+
+// Faces that overlap in one plane have one set of coefficients of it, so that a ray meets all of them at one t, exactly.
+// A part's record in `shapes`: unit normal (3), offset (normal·x on the plane), number of the plane (0: this part shares
+// none), and whether the face looks along the normal (1) or against it (-1).
+#define CLRAY_PLANE_OFFSET 3
+#define CLRAY_PLANE_NUMBER 4
+#define CLRAY_PLANE_FACING 5
+#define CLRAY_PLANE_SIZE 6
 
 // An analytic shape's numbers in `shapes`: rotation body -> local (9, by rows), origin (3), scale, then its keys.
 #define CLRAY_SHAPE_ORIGIN 9
@@ -156,7 +166,7 @@ typedef struct ClrayPass {
 
 // Sizes, asserted in C++ here and on the device by the start-up self-test.
 #define CLRAY_SIZES(X) \
-  X(ClrayMaterial, 120) X(ClrayPrimitive, 24) X(ClrayNode, 112) X(ClrayInstance, 136) X(ClrayView, 160) X(ClrayStratum, 16) \
+  X(ClrayMaterial, 120) X(ClrayPrimitive, 32) X(ClrayNode, 112) X(ClrayInstance, 136) X(ClrayView, 160) X(ClrayStratum, 16) \
   X(ClrayConnection, 48) X(ClrayDelay, 40) X(ClrayPass, 136)
 #ifdef __cplusplus
 #define CLRAY_ASSERT_SIZE(type, size) static_assert(sizeof(type) == size, "abi.h: " #type);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stage 2, intersect: the nearest hit of a ray, or whether anything is in its way. fp32 boxes cull, fp64 decides; equal
-// distances go to the smaller canonical id. With hinged parts the top level of the BVH holds instances, each with a
+// Stage 2, intersect: the nearest hit of a ray, or whether anything is in its way. fp32 boxes cull, fp64 decides. Among
+// faces at equal distance the one whose lit side looks at the ray wins, then the smaller canonical id. With hinged parts the top level of the BVH holds instances, each with a
 // tree of its own in its own frame; motions are rigid, so distances are common to all frames.
 #ifndef CLRAY_INTERSECT_CL
 #define CLRAY_INTERSECT_CL
@@ -8,15 +8,17 @@
 /// The ray in the frame of an instance (or as it is).
 typedef struct LocalRay {
   vec3 o, d;
+  u32 skip_plane;
 #if CLRAY_TRIANGLES
   RayShear shear;
 #endif
 } LocalRay;
 
-static LocalRay local_ray(vec3 o, vec3 d) {
+static LocalRay local_ray(vec3 o, vec3 d, u32 skip_plane) {
   LocalRay r;
   r.o = o;
   r.d = d;
+  r.skip_plane = skip_plane;
 #if CLRAY_TRIANGLES
   r.shear = triangle_shear(o, d);
 #endif
@@ -47,35 +49,70 @@ static vec3 shape_to_local(const __global f64 *data, vec3 point) {
 }
 #endif
 
-/// Tests one primitive; a nearer hit (or one as near with a smaller id) replaces *hit.
+#if CLRAY_ONE_SIDED
+static u32 two_sided(const Buffers *g, u32 material) {
+  return g->materials[g->pass->first_lane * CLRAY_MATERIALS + material].flags & CLRAY_MATERIAL_TWO_SIDED;
+}
+#endif
+
+#if CLRAY_PLANES
+/// Puts a hit of a face that shares its plane where the ray meets that plane. Returns 0 where the ray leaves the plane.
+static i32 meet_plane(const Buffers *g, const LocalRay *ray, const __global ClrayPrimitive *primitive, u32 part, f64 *t,
+                      u32 *plane, u32 *rank) {
+  const __global f64 *p = g->shapes + primitive->planes + CLRAY_PLANE_SIZE * part;
+  *plane = (u32)p[CLRAY_PLANE_NUMBER];
+  if (*plane == 0u) return 1;
+  if (*plane == ray->skip_plane) return 0;
+  const vec3 normal = v3_load(p);
+  const f64 along = v3_dot(normal, ray->d);
+  *t = (p[CLRAY_PLANE_OFFSET] - v3_dot(normal, ray->o)) / along;
+  *rank = along * p[CLRAY_PLANE_FACING] < 0.0 ? 2u : 1u;
+#if CLRAY_ONE_SIDED
+  if (*rank == 1u && !two_sided(g, primitive->material)) *rank = 0u;
+#endif
+  return *t > 0.0;
+}
+#endif
+
+/// Tests one primitive; a nearer hit, or one as near that goes first, replaces *hit.
 static void test_primitive(const Buffers *g, const LocalRay *ray, u32 index, u32 instance, Hit *hit) {
   const __global ClrayPrimitive *primitive = g->primitives + index;
   const __global f64 *data = g->shapes + primitive->data;
-  f64 t;
-  u32 part = 0u;
+  f64 t, t_max = hit->t;
+  u32 part = 0u, plane = 0u, rank = 0u;
   vec3 weights = v3(0.0, 0.0, 0.0);
   i32 found;
+#if CLRAY_PLANES
+  // Its own t is rounded otherwise than that of the plane, which decides.
+  if (primitive->planes != CLRAY_NO_PLANES) t_max = INFINITY;
+#endif
 #if CLRAY_ANALYTIC
 #if CLRAY_TRIANGLES
   if (primitive->shape == CLRAY_SHAPE_triangle) {
-    found = triangle_intersect(data, &ray->shear, hit->t, &t, &weights);
+    found = triangle_intersect(data, &ray->shear, t_max, &t, &weights);
   } else
 #endif
   {
     const f64 scale = data[CLRAY_SHAPE_SCALE];
     found = shape_intersect(primitive->shape, data + CLRAY_SHAPE_KEYS, shape_to_local(data, ray->o),
-                            rotate(data, ray->d), hit->t / scale, &t, &part);
+                            rotate(data, ray->d), t_max / scale, &t, &part);
     if (found) t *= scale;
   }
 #else
-  found = triangle_intersect(data, &ray->shear, hit->t, &t, &weights);
+  found = triangle_intersect(data, &ray->shear, t_max, &t, &weights);
 #endif
-  if (!found || t > hit->t || (t == hit->t && primitive->id >= hit->id)) return;
+#if CLRAY_PLANES
+  if (found && primitive->planes != CLRAY_NO_PLANES) found = meet_plane(g, ray, primitive, part, &t, &plane, &rank);
+#endif
+  if (!found || t > hit->t) return;
+  if (t == hit->t && (rank != hit->rank ? rank < hit->rank : primitive->id >= hit->id)) return;
   hit->t = t;
   hit->primitive = index;
   hit->instance = instance;
   hit->id = primitive->id;
   hit->part = part;
+  hit->plane = plane;
+  hit->rank = rank;
   hit->weights = weights;
 }
 
@@ -102,6 +139,8 @@ static i32 intersect(const Buffers *g, const Ray *ray, u32 view, u32 any, Hit *h
   hit->primitive = 0xffffffffu;
   hit->id = 0xffffffffu;
   hit->instance = 0u;
+  hit->plane = 0u;
+  hit->rank = 0u;
 #if CLRAY_INSTANCED
   BvhWalk walk;
   u32 first, count;
@@ -109,14 +148,16 @@ static i32 intersect(const Buffers *g, const Ray *ray, u32 view, u32 any, Hit *h
   while (bvh_next(&walk, g->nodes, hit->t, &first, &count, g->counters)) {
     for (u32 k = first; k < first + count; ++k) {
       const __global ClrayInstance *instance = g->instances + k;
-      const LocalRay placed = instance->moved ? local_ray(to_instance(instance, ray->o), rotate(instance->rotation, ray->d))
-                                             : local_ray(ray->o, ray->d);
+      const LocalRay placed =
+          instance->moved
+              ? local_ray(to_instance(instance, ray->o), rotate(instance->rotation, ray->d), ray->skip_plane)
+              : local_ray(ray->o, ray->d, ray->skip_plane);
       intersect_tree(g, ray, &placed, v3_load(instance->box_centre), instance->box_scale, instance->root, k, any, hit);
       if (any && hit->primitive != 0xffffffffu) return 1;
     }
   }
 #else
-  const LocalRay placed = local_ray(ray->o, ray->d);
+  const LocalRay placed = local_ray(ray->o, ray->d, ray->skip_plane);
   intersect_tree(g, ray, &placed, centre, from->box_scale, from->root, 0u, any, hit);
 #endif
   return hit->primitive != 0xffffffffu;
@@ -175,14 +216,14 @@ static Surface hit_surface(const Buffers *g, const Ray *ray, const Hit *hit) {
   surface.component = primitive->component;
   surface.primitive = hit->primitive;
   surface.instance = hit->instance;
-  surface.plane = primitive->flags & CLRAY_PRIMITIVE_PLANE;
+  surface.flat = primitive->flags & CLRAY_PRIMITIVE_PLANE;
+  surface.plane = hit->plane;
   surface.lit = 1u;
   if (surface.mu < 0.0) {
     surface.normal = v3_neg(surface.normal);
     surface.mu = -surface.mu;
 #if CLRAY_ONE_SIDED
-    surface.lit = g->materials[g->pass->first_lane * CLRAY_MATERIALS + primitive->material].flags &
-                  CLRAY_MATERIAL_TWO_SIDED;
+    surface.lit = two_sided(g, primitive->material);
 #endif
   }
   return surface;
@@ -206,8 +247,9 @@ static Ray ray_from(const Surface *surface, vec3 d) {
   Ray ray;
   ray.o = v3_fma(surface->error, surface->normal, surface->point);
   ray.d = d;
-  ray.skip_primitive = surface->plane ? surface->primitive : 0xffffffffu;
+  ray.skip_primitive = surface->flat ? surface->primitive : 0xffffffffu;
   ray.skip_instance = surface->instance;
+  ray.skip_plane = surface->plane;
   return ray;
 }
 

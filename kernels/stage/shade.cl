@@ -30,63 +30,104 @@ static i32 stage_shade(const Buffers *g, const Surface *surface, const Path *pat
 #endif
 
 #if CLRAY_SCATTER
-/// Directional reflectance from the material's table: cubic through four neighbours (Lagrange).
-static f64 lane_reflectance(const Buffers *g, const __global ClrayMaterial *m, f64 mu) {
-  const f64 x = f64_min(f64_max(mu, 0.0), 1.0) * (f64)(CLRAY_REFLECTANCE_NODES - 1);
-  const i32 k = min(max((i32)floor(x) - 1, 0), CLRAY_REFLECTANCE_NODES - 4);
-  const __global f64 *y = g->tables + m->reflectance + k;
-  const f64 s = x - (f64)k;
-  const f64 a = s, b = s - 1.0, c = s - 2.0, d = s - 3.0;
-  const f64 l0 = -(b * c * d) / 6.0, l1 = (a * c * d) / 2.0, l2 = -(a * b * d) / 2.0, l3 = (a * b * c) / 6.0;
-  return fma(l0, y[0], fma(l1, y[1], fma(l2, y[2], l3 * y[3])));
+/// The largest throughput over the lanes.
+static f64 path_largest(const Path *path) {
+  f64 largest = 0.0;
+  for (u32 lane = 0; lane < CLRAY_LANES; ++lane) largest = f64_max(largest, path->throughput[lane]);
+  return largest;
 }
 
+/// Directional reflectance from the material's table: linear between nodes that the host set as close as it takes.
+static f64 lane_reflectance(const Buffers *g, const __global ClrayMaterial *m, f64 mu) {
+  const __global f64 *nodes = g->tables + m->reflectance + 1;
+  const u32 count = (u32)nodes[-1];
+  u32 low = 0u, high = count - 1u;
+  while (high - low > 1u) {
+    const u32 middle = (low + high) / 2u;
+    if (nodes[middle] <= mu)
+      low = middle;
+    else
+      high = middle;
+  }
+  const __global f64 *values = nodes + count;
+  const f64 share = f64_min(f64_max((mu - nodes[low]) / (nodes[high] - nodes[low]), 0.0), 1.0);
+  return fma(share, values[high] - values[low], values[low]);
+}
+
+#if CLRAY_LANES > 1
+/// Carries products and densities of all lanes through a reflection toward wo, and the throughputs that follow from
+/// them. A common power of two keeps both in range over any number of bounces; no throughput depends on it.
+static void scatter_lanes(const Buffers *g, const Surface *surface, vec3 wo, f64 hero_pdf, Path *path) {
+  const BrdfAngles angles = brdf_angles(surface->normal, surface->toward, wo);
+  f64 sum = 0.0, largest = 0.0;
+  for (u32 lane = 0; lane < CLRAY_LANES; ++lane) {
+    const __global ClrayMaterial *m = lane_material(g, lane, surface->material);
+    path->product[lane] *= brdf_eval(m, g->tables, angles) * angles.mu_o / hero_pdf;
+    path->density[lane] *= brdf_pdf(m, g->tables, angles) / hero_pdf;
+    sum += path->density[lane];
+    largest = f64_max(largest, path->density[lane]);
+  }
+  for (u32 lane = 0; lane < CLRAY_LANES; ++lane)
+    path->throughput[lane] = path->share * (path->product[lane] / (sum / (f64)CLRAY_LANES));
+  if (largest <= CLRAY_TWO_TO_32) return;
+  for (u32 lane = 0; lane < CLRAY_LANES; ++lane) {
+    path->product[lane] *= CLRAY_TWO_TO_MINUS_32;
+    path->density[lane] *= CLRAY_TWO_TO_MINUS_32;
+  }
+}
+#endif
+
 /// Chooses where the path goes on: 1 and the ray with the path's throughput after the reflection, or 0 when all that
-/// is left is absorbed. Lanes share the direction, drawn for lane 0.
+/// is left is absorbed. The lane that samples is chosen by the first bounce's lobe coordinate, whose rest then chooses
+/// the lobe: an even choice that stays stratified.
 static i32 stage_scatter(const Buffers *g, const Sampler *sampler, u32 bounce, const Surface *surface, Path *path,
                          Ray *ray, f64 *roulette) {
   f64 u[4];
   sampler_draw(sampler, g->directions, bounce + 1u, 0u, 4u, u);
   *roulette = u[3];
+  u32 hero = 0u;
+#if CLRAY_LANES > 1
+  if (bounce == 0u) {
+    const f64 x = u[0] * (f64)CLRAY_LANES;
+    path->hero = min((u32)x, CLRAY_LANES - 1u);
+    u[0] = x - (f64)path->hero;
+  }
+  hero = path->hero;
+#endif
+  if (!surface->lit || !(surface->mu > 0.0)) return 0;
   vec3 t, b;
   v3_frame(surface->normal, &t, &b);
   const vec3 wi = v3(v3_dot(surface->toward, t), v3_dot(surface->toward, b), surface->mu);
-  const __global ClrayMaterial *first = lane_material(g, 0u, surface->material);
-  if (!surface->lit || !(surface->mu > 0.0)) return 0;
-  const BrdfSample sample = brdf_sample(first, g->tables, wi, u[0], u[1], u[2]);
+  const BrdfSample sample =
+      brdf_sample(lane_material(g, hero, surface->material), g->tables, wi, u[0], u[1], u[2]);
   if (!sample.ok) return 0;
   const vec3 wo = v3_unit(v3_fma(sample.wo.x, t, v3_fma(sample.wo.y, b, v3_scale(sample.wo.z, surface->normal))));
-  f64 largest = path->throughput[0] *= sample.weight;
 #if CLRAY_LANES > 1
-  const BrdfAngles angles = brdf_angles(surface->normal, surface->toward, wo);
-  for (u32 lane = 1; lane < CLRAY_LANES; ++lane) {
-    const __global ClrayMaterial *m = lane_material(g, lane, surface->material);
-    const f64 weight = sample.delta ? brdf_sample(m, g->tables, wi, u[0], u[1], u[2]).weight
-                                    : brdf_eval(m, g->tables, angles) * angles.mu_o / sample.pdf;
-    path->throughput[lane] *= weight;
-    largest = f64_max(largest, path->throughput[lane]);
-  }
+  scatter_lanes(g, surface, wo, sample.pdf, path);
+#else
+  path->throughput[0] *= sample.weight;
 #endif
   path->delta = (u32)sample.delta;
   *ray = ray_from(surface, wo);
-  return largest > 0.0;
+  return path_largest(path) > 0.0;
 }
 
-/// Russian roulette on the largest throughput, from the third bounce on: survives with probability q and is raised by
-/// 1/q, so the mean stays. Returns whether the path lives; gain[lane] is what it won or lost.
+/// Russian roulette, from the third bounce on, on the largest part of its share that the path still carries: it survives
+/// with probability q and is raised by 1/q, so the mean stays. The share itself has no say: a path that stands for little
+/// of the beam is as likely to go on as any. Returns whether the path lives; gain[lane] is what it won or lost.
 static i32 stage_roulette(u32 bounce, f64 u, Path *path, f64 *gain) {
-  f64 largest = 0.0;
-  for (u32 lane = 0; lane < CLRAY_LANES; ++lane) {
-    largest = f64_max(largest, path->throughput[lane]);
-    gain[lane] = 0.0;
-  }
-  if (bounce < 2u || largest >= 1.0) return 1;
-  const f64 q = f64_max(largest, 0.05);
+  for (u32 lane = 0; lane < CLRAY_LANES; ++lane) gain[lane] = 0.0;
+  const f64 left = path_largest(path) / path->share;
+  if (bounce < 2u || left >= 1.0) return 1;
+  const f64 q = f64_max(left, 0.05);
   const i32 lives = u < q;
   for (u32 lane = 0; lane < CLRAY_LANES; ++lane) {
     const f64 before = path->throughput[lane];
     path->throughput[lane] = lives ? before / q : 0.0;
     gain[lane] = path->throughput[lane] - before;
+#if CLRAY_LANES > 1
+    path->product[lane] /= q;
+#endif
   }
   return lives;
 }

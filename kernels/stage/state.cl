@@ -27,6 +27,7 @@ typedef struct Buffers {
 typedef struct Ray {
   vec3 o, d;
   u32 skip_primitive, skip_instance;  // a plane primitive that the ray leaves, and so cannot hit
+  u32 skip_plane;                     // the shared plane that it leaves (0: none): none of its faces can be hit
 } Ray;
 
 /// The nearest hit of a ray.
@@ -35,6 +36,8 @@ typedef struct Hit {
   u32 primitive, instance;
   u32 id;
   u32 part;      // of an analytic shape
+  u32 plane;     // number of the shared plane it lies in; 0: none
+  u32 rank;      // among faces in one plane: 2 its front is hit, 1 a lit back, 0 a black back
   vec3 weights;  // barycentric, of a triangle
 } Hit;
 
@@ -48,15 +51,24 @@ typedef struct Surface {
   u32 material;  // column of the material table
   u32 component;
   u32 primitive, instance;
-  u32 plane;
+  u32 flat;      // no ray that leaves the primitive can hit it
+  u32 plane;     // number of the shared plane it lies in; 0: none
   u32 lit;       // 0: the black back of a one-sided material
 } Surface;
 
-/// A path between its start and its current surface.
+/// A path between its start and its current surface. Lanes share its directions: one of them, drawn evenly, samples all
+/// (hero wavelengths, Wilkie et al. 2014). Lane l is worth f_l/((1/L)·sum_m p_m), with f and p the products of f·mu_o and
+/// of the densities along the path. Both are kept over the density of the lane that samples.
 typedef struct Path {
-  f64 length;                     // m, from the start plane through the reference point
-  f64 throughput[CLRAY_LANES];
-  u32 delta;                      // the last reflection was ideal: only a cone connects it
+  f64 length;                   // m, from the start plane through the reference point
+  f64 share;                    // of the beam (or pixel) that the path stands for
+  f64 throughput[CLRAY_LANES];  // share of the light that is still on its way
+#if CLRAY_SCATTER && CLRAY_LANES > 1
+  u32 hero;                     // the lane that samples
+  f64 product[CLRAY_LANES];     // f_l over the density of the hero
+  f64 density[CLRAY_LANES];     // p_l over the density of the hero
+#endif
+  u32 delta;                    // the last reflection was ideal: only a cone connects it
 } Path;
 
 /// Where a work-item adds: the slot of (view, lane 0, connection 0) and its replicate, and its own sums.

@@ -28,9 +28,10 @@ clray::Scene bowl(double rho, int bounces, int log2_rays) {
 }
 
 void check_books(const clray::Result& result) {
-  const clray::EnergyBooks& e = result.energy;
-  CHECK(e.started == e.escaped + e.killed + e.capped);
-  CHECK(e.started > 0);
+  const clray::PathCounts& paths = result.paths;
+  CHECK(paths.started == paths.escaped + paths.killed + paths.capped);
+  CHECK(paths.started > 0);
+  const clray::EnergyBooks& e = result.energy.at(0);
   const double out = e.absorbed_m2.value + e.reflected_m2.value + e.truncated_m2.value - e.roulette_m2.value;
   const double error = e.incident_m2.standard_error + e.absorbed_m2.standard_error + e.reflected_m2.standard_error +
                        e.truncated_m2.standard_error + e.roulette_m2.standard_error;
@@ -59,14 +60,14 @@ TEST_CASE("Lambert bowl: rho/2 of the light leaves at the first bounce, rho/(2 -
   for (double rho : {0.3, 0.8, 1.0}) {
     CAPTURE(rho);
     const clray::Result two = run(bowl(rho, 2, 20));
-    const double in = two.energy.incident_m2.value;
+    const double in = two.energy.at(0).incident_m2.value;
     CHECK(in == relative(kPi).epsilon(5e-4));
-    check_near(two.energy.reflected_m2, in * (rho / 2.0 + rho * rho / 4.0), 1e-3, "reflected in two bounces");
-    check_near(two.energy.truncated_m2, in * rho * rho / 4.0, 2e-3, "cut off after two bounces");
+    check_near(two.energy.at(0).reflected_m2, in * (rho / 2.0 + rho * rho / 4.0), 1e-3, "reflected in two bounces");
+    check_near(two.energy.at(0).truncated_m2, in * rho * rho / 4.0, 2e-3, "cut off after two bounces");
     CHECK(two.diagnostics.truncated_energy_fraction == relative(rho * rho / 4.0).epsilon(2e-3));
     check_books(two);
     const clray::Result all = run(bowl(rho, 64, 20));
-    check_near(all.energy.reflected_m2, in * rho / (2.0 - rho), 1e-3, "reflected in all");
+    check_near(all.energy.at(0).reflected_m2, in * rho / (2.0 - rho), 1e-3, "reflected in all");
     check_books(all);
   }
 }
@@ -82,7 +83,7 @@ TEST_CASE("Lambert cavity with a hole of share f: rho f/(1 - rho (1 - f)) comes 
     rays(scene, 20);
     const clray::Result result = run(scene);
     const double enters = kPi * std::sin(opening) * std::sin(opening);
-    check_near(result.energy.reflected_m2, enters * rho * f / (1.0 - rho * (1.0 - f)), 2e-3, "cavity");
+    check_near(result.energy.at(0).reflected_m2, enters * rho * f / (1.0 - rho * (1.0 - f)), 2e-3, "cavity");
     check_books(result);
   }
 }
@@ -111,7 +112,7 @@ TEST_CASE("mirror dihedral of 90 degrees: all light comes back to the station, w
   scene.observers[0].acceptance_rad = 0.0;
   const clray::Result blind = run(scene);
   CHECK(blind.delay.at(0).intensity_m2_per_sr.value == 0.0);
-  CHECK(blind.energy.unconnected_specular_m2.value == relative(0.81 * 2.0 * h).epsilon(1e-6));
+  CHECK(blind.energy.at(0).unconnected_specular_m2.value == relative(0.81 * 2.0 * h).epsilon(1e-6));
   CHECK(!blind.warnings.empty());
 }
 

@@ -219,7 +219,7 @@ Outcome drift(int log2_points) {
   const double spread = std::sqrt(0.5 / (kReplicates - 1));
   const std::uint64_t hits = std::accumulate(d.hits.begin(), d.hits.end(), std::uint64_t{0});
   outcome.measured += fmt::format(" = {:.2f} of σ/√N; {} hits of {} rays", ratio, hits, result.rays);
-  const bool counted = result.energy.started == hits && result.energy.capped == hits && result.energy.escaped == 0;
+  const bool counted = result.paths.started == hits && result.paths.capped == hits && result.paths.escaped == 0;
   outcome.pass = sound(result, &outcome.measured) && outcome.pass && counted &&
                  std::fabs(ratio - 1.0) <= 4.0 * spread &&
                  std::fabs(d.intensity_m2_per_sr.value - exact) <= 4.0 * sigma && hits == scene.trace.rays &&
