@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 #include <sstream>
+#include <unordered_map>
 
 #include "clray/error.hpp"
 #include "scene/scene_csv.hpp"
@@ -52,24 +53,52 @@ bool same(const Material& a, const Material& b) {
   return true;
 }
 
-std::uint32_t add_material(Scene* scene, Material material) {
-  scene->materials.push_back(std::move(material));
-  return static_cast<std::uint32_t>(scene->materials.size() - 1);
-}
+/// The materials of a scene and of a component's mesh file by name. A library may hold a million of them.
+class NameIndex {
+ public:
+  NameIndex(Scene* scene, const Component& component) : scene_(scene), component_(component) {
+    for (std::size_t i = 0; i < scene->materials.size(); ++i) place_.emplace(scene->materials[i].name, i);
+    if (!component.mesh) return;
+    for (const Material& m : component.mesh->file_materials) file_[m.name] = &m;
+  }
 
-/// A mesh file's own material: shared where an equal one is there, renamed where a different one has its name.
-std::uint32_t file_material(Scene* scene, const Component& component, Material material) {
-  const int there = find_material(*scene, material.name);
-  if (there < 0) return add_material(scene, std::move(material));
-  if (same(scene->materials[static_cast<std::size_t>(there)], material)) return static_cast<std::uint32_t>(there);
-  material.name += " (" + component.name + ")";
-  return add_material(scene, std::move(material));
-}
+  int find(const std::string& name) const {
+    const auto there = place_.find(name);
+    return there == place_.end() ? -1 : static_cast<int>(there->second);
+  }
 
-std::uint32_t default_index(Scene* scene) {
-  const int there = find_material(*scene, default_material().name);
-  return there >= 0 ? static_cast<std::uint32_t>(there) : add_material(scene, default_material());
-}
+  const Material* from_file(const std::string& name) const {
+    const auto there = file_.find(name);
+    return there == file_.end() ? nullptr : there->second;
+  }
+
+  std::uint32_t add_if_missing(Material material) {
+    const int there = find(material.name);
+    return there >= 0 ? static_cast<std::uint32_t>(there) : add(std::move(material));
+  }
+
+  /// A mesh file's own material: shared where an equal one is there, renamed where a different one has its name.
+  std::uint32_t add_from_file(Material material) {
+    const int there = find(material.name);
+    if (there < 0) return add(std::move(material));
+    if (same(scene_->materials[static_cast<std::size_t>(there)], material)) return static_cast<std::uint32_t>(there);
+    material.name += " (" + component_.name + ")";
+    return add(std::move(material));
+  }
+
+ private:
+  std::uint32_t add(Material material) {
+    const std::size_t place = scene_->materials.size();
+    place_.emplace(material.name, place);
+    scene_->materials.push_back(std::move(material));
+    return static_cast<std::uint32_t>(place);
+  }
+
+  Scene* scene_;
+  const Component& component_;
+  std::unordered_map<std::string, std::size_t> place_;
+  std::unordered_map<std::string, const Material*> file_;
+};
 
 [[noreturn]] void usage(const std::string& message) {
   throw Error(ErrorCode::usage, message, "--material");
@@ -183,23 +212,21 @@ bool assign_materials(Scene* scene, std::size_t defined, Component* component,
   const Mesh* mesh = component->mesh.get();
   const std::vector<std::string>& slots = mesh != nullptr ? mesh->material_slots : shape_slot;
   component->materials.clear();
+  NameIndex index(scene, *component);
   bool defaulted = false;
   for (const std::string& slot : slots) {
     const auto mapped = by_slot.find(slot);
     const std::string wanted = mapped != by_slot.end() ? mapped->second : common;
-    const int named = wanted.empty() ? find_material(*scene, slot) : find_material(*scene, wanted);
+    const int named = index.find(wanted.empty() ? slot : wanted);
     const bool own = !wanted.empty() || (named >= 0 && static_cast<std::size_t>(named) < defined);
     if (own && named >= 0) {
       component->materials.push_back(static_cast<std::uint32_t>(named));
       continue;
     }
-    const Material* from_file = nullptr;
-    if (mesh != nullptr) {
-      for (const Material& m : mesh->file_materials) from_file = m.name == slot && !slot.empty() ? &m : from_file;
-    }
+    const Material* from_file = slot.empty() ? nullptr : index.from_file(slot);
     defaulted = defaulted || from_file == nullptr;
-    component->materials.push_back(from_file != nullptr ? file_material(scene, *component, *from_file)
-                                                        : default_index(scene));
+    component->materials.push_back(from_file != nullptr ? index.add_from_file(*from_file)
+                                                        : index.add_if_missing(default_material()));
   }
   return defaulted;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// load_mesh(): picks the reader by extension, scales to metres, triangulates, lets OpenMesh hold and measure the
-// mesh, and counts edges from the file's own indices. Every face of the file stays in the Mesh, in its order.
+// load_mesh(): picks the reader by extension, scales to metres, triangulates, measures, and counts edges from the
+// file's own indices. Every face of the file that has an area stays in the Mesh, in its order.
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -9,13 +9,12 @@
 #include <cerrno>
 #include <cmath>
 #include <cstring>
-#include <filesystem>
 
-#include "scene/mesh_formats.hpp"
+#include "scene/foreign_format.hpp"
+#include "scene/mesh_readers.hpp"
 #include "scene/mesh_soup.hpp"
-#include "scene/mesh_store.hpp"
 #include "scene/mesh_triangulate.hpp"
-#include "scene/obj_reader.hpp"
+#include "shared/portable.h"
 
 namespace clray {
 
@@ -103,18 +102,52 @@ void count_edges(const PolygonSoup& soup, MeshReport& report) {
   }
 }
 
-std::string extension_of(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return extension;
-}
-
 PolygonSoup read_soup(const std::string& path) {
   const std::string extension = extension_of(path);
-  if (extension == ".obj") return read_obj(path);
-  if (extension == ".ply" || extension == ".stl" || extension == ".off")
-    return read_with_openmesh(path, extension.substr(1));
-  fail_input(path, 0, "the extension '" + extension + "' is no mesh format; .obj, .ply, .stl or .off was expected");
+  const auto reader = extension == ".obj"   ? read_obj
+                      : extension == ".ply" ? read_ply
+                      : extension == ".stl" ? read_stl
+                      : extension == ".off" ? read_off
+                                            : nullptr;
+  if (reader == nullptr) {
+    const std::string foreign = foreign_format(path);
+    fail_input(path, 0,
+               (foreign.empty() ? "the extension '" + extension + "' is no mesh format" : foreign) +
+                   "; .obj, .ply, .stl or .off was expected");
+  }
+  const std::string content = read_mesh_file(path);
+  if (content.empty()) fail_input(path, 1, "the file is empty; a mesh was expected");
+  PolygonSoup soup = reader(path, content);
+  soup.short_faces.warn(path, "a face with fewer than three corners is left out", soup.warnings);
+  if (soup.faces() + soup.collapsed == 0) fail_input(path, 0, "no faces; at least one of three corners was expected");
+  return soup;
+}
+
+// Twice the area of a triangle, and whether that is no more than its corners' rounding can make: no higher over its
+// longest edge than four units in the last place of its coordinates. Corners that lie on a line in decimal need not do
+// so once each is rounded to double.
+double twice_area(const Vec3& a, const Vec3& b, const Vec3& c, bool& degenerate) {
+  const vec3 u = v3(b.x - a.x, b.y - a.y, b.z - a.z), v = v3(c.x - a.x, c.y - a.y, c.z - a.z);
+  const double twice = v3_length(v3_cross(u, v));
+  double largest = 0.0;
+  for (int k = 0; k < 3; ++k) largest = std::max({largest, std::fabs(a[k]), std::fabs(b[k]), std::fabs(c[k])});
+  const double longest = std::max({v3_length(u), v3_length(v), v3_length(v3_sub(u, v))});
+  degenerate = twice <= 4.0 * 0x1p-52 * largest * longest;
+  return twice;
+}
+
+void measure(Mesh& mesh) {
+  double sum = 0.0, lost = 0.0;  // compensated (Neumaier 1974): ten million terms keep all digits
+  for (const auto& t : mesh.triangles) {
+    bool degenerate = false;
+    const double area = 0.5 * twice_area(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]], degenerate);
+    mesh.report.degenerate += degenerate;
+    const double total = sum + area;
+    lost += sum >= area ? (sum - total) + area : (area - total) + sum;
+    sum = total;
+  }
+  mesh.report.area_m2 = sum + lost;
+  mesh.report.triangles = mesh.triangles.size();
 }
 
 }  // namespace
@@ -137,7 +170,6 @@ std::string read_mesh_file(const std::string& path) {
     done += static_cast<std::size_t>(got);
   }
   content.resize(done);
-  if (content.empty()) fail_input(path, 1, "the file is empty; a mesh or a material library was expected");
   return content;
 }
 
@@ -156,12 +188,8 @@ std::shared_ptr<const Mesh> load_mesh(const std::string& path, double length_uni
   mesh->report.faces = soup.faces() + soup.collapsed;
   count_edges(soup, mesh->report);
   triangulate_faces(soup, *mesh, path);
-  const std::uint64_t collapsed = soup.collapsed;
-  soup = PolygonSoup();
-  const StoreReport store = store_and_measure(mesh->vertices, mesh->triangles);
-  mesh->report.triangles = mesh->triangles.size();
-  mesh->report.area_m2 = store.area_m2;
-  mesh->report.degenerate = store.degenerate + collapsed;
+  mesh->report.degenerate = soup.collapsed;
+  measure(*mesh);
   if (!(mesh->report.area_m2 > 0.0)) fail_input(path, 0, "all faces are without area; a surface was expected");
   return mesh;
 }

@@ -61,6 +61,16 @@ std::string quote_word(std::string_view word) {
   return text + (word.size() > 40 ? "…'" : "'");
 }
 
+std::string without_comment(std::string_view name, bool glued) {
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    if (name[i] != '#' || (i > 0 && !is_blank(name[i - 1]))) continue;
+    if (!glued && i + 1 < name.size() && !is_blank(name[i + 1])) continue;
+    while (i > 0 && is_blank(name[i - 1])) --i;
+    return std::string(name.substr(0, i));
+  }
+  return std::string(name);
+}
+
 std::string parse_number(std::string_view word, double& value) {
   const char* p = word.data();
   const char* end = p + word.size();
@@ -129,9 +139,11 @@ std::string_view TextCursor::word() {
 }
 
 std::string_view TextCursor::rest() {
-  if (!more_on_line()) return {};
+  while (p_ != end_ && is_blank(*p_)) ++p_;
   const char* start = p_;
-  while (p_ != end_ && *p_ != '\n' && *p_ != '\r' && !at_continuation() && !(*p_ == '#' && is_blank(p_[-1]))) ++p_;
+  bool comment = false;  // in which a backslash continues nothing
+  for (; p_ != end_ && *p_ != '\n' && *p_ != '\r' && (comment || !at_continuation()); ++p_)
+    comment = comment || (*p_ == '#' && (p_ == start || is_blank(p_[-1])) && (p_ + 1 == end_ || is_blank(p_[1])));
   const char* stop = p_;
   while (stop != start && is_blank(stop[-1])) --stop;
   return {start, static_cast<std::size_t>(stop - start)};

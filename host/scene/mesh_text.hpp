@@ -28,7 +28,9 @@ class TextCursor {
   bool next_filled_line();
   /// The word under the cursor (empty at the end of the line).
   std::string_view word();
-  /// The rest of the line without trailing blanks and comment, spaces kept.
+  /// Puts the last `n` characters of the word just read back.
+  void back(std::size_t n) { p_ -= n; }
+  /// The rest of the line without trailing blanks, spaces and '#' kept.
   std::string_view rest();
 
   /// The next word as a finite number; `what` names it in the error.
@@ -51,6 +53,11 @@ class TextCursor {
 
 /// `word` in quotes, shortened and with unprintable bytes escaped, for messages.
 std::string quote_word(std::string_view word);
+
+/// A name that takes the rest of its line, without the comment behind it: what follows a '#' that comes after a blank
+/// (or first) and, unless `glued`, before a blank (or last). "Material #25" is a name, "foil # bright" one with a
+/// comment.
+std::string without_comment(std::string_view name, bool glued = false);
 
 /// `word` as a double. Returns an empty string, or what is wrong with it.
 std::string parse_number(std::string_view word, double& value);

@@ -10,6 +10,7 @@
 #include <glm/geometric.hpp>
 
 #include "clray/error.hpp"
+#include "scene/foreign_format.hpp"
 #include "scene/material.hpp"
 #include "scene/scene_parts.hpp"
 #include "scene/tables.hpp"
@@ -18,14 +19,6 @@ namespace clray {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string extension_of(const std::string& path) {
-  std::string extension = fs::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : static_cast<char>(c);
-  });
-  return extension;
-}
 
 Scene bare_mesh(const std::string& path, const SceneOptions& options) {
   Scene scene;
@@ -138,7 +131,11 @@ Scene load_scene(const std::string& path, const SceneOptions& options) {
   const std::string extension = extension_of(path);
   const bool mesh = extension == ".obj" || extension == ".ply" || extension == ".stl" || extension == ".off";
   if (!mesh && extension != ".toml") {
-    throw Error(ErrorCode::input, "expected a scene file (.toml) or a mesh (.obj .ply .stl .off)", path);
+    const std::string foreign = foreign_format(path);
+    throw Error(
+        ErrorCode::input,
+        (foreign.empty() ? "" : foreign + "; ") + "expected a scene file (.toml) or a mesh (.obj .ply .stl .off)",
+        path);
   }
   std::error_code error;
   if (!fs::is_regular_file(path, error)) throw Error(ErrorCode::input, "there is no such file", path);
