@@ -16,6 +16,7 @@
 #include "clray/error.hpp"
 #include "clray/result.hpp"
 #include "clray/session.hpp"
+#include "environment.hpp"
 #include "report.hpp"
 
 namespace {
@@ -184,6 +185,7 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
+    const cli::Environment environment;
     const int status = run(argc, argv);
     flush_output();
     return status;

@@ -43,6 +43,24 @@ std::string kernel_cache_folder() {
   return "/tmp/pocl/kcache";
 }
 
+bool kernel_cache_writable() {
+  const fs::path folder = kernel_cache_folder();
+  std::error_code error;
+  fs::create_directories(folder, error);
+  std::string name = (folder / "clray-probe-XXXXXX").string();
+  const int file = mkstemp(name.data());
+  if (file < 0) return false;
+  const bool written = write(file, "clray", 5) == 5;
+  close(file);
+  unlink(name.c_str());
+  return written;
+}
+
+std::string unwritable_cache() {
+  return "the folder of compiled kernels, " + kernel_cache_folder() +
+         ", cannot be written: POCL_CACHE_DIR names another";
+}
+
 std::optional<cl::Program> load_binary(const OpenedDevice& opened, const std::string& flags,
                                        const std::string& source) {
   const std::string key = key_of(opened, flags, source);

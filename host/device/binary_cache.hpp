@@ -19,7 +19,7 @@ std::optional<cl::Program> load_binary(const OpenedDevice& opened, const std::st
 void save_binary(const OpenedDevice& opened, const std::string& flags, const std::string& source,
                  const cl::Program& program);
 
-/// Where PoCL keeps its kernels: POCL_CACHE_DIR, or PoCL's default.
-std::string kernel_cache_folder();
+/// What to tell about a folder of compiled kernels that cannot be written.
+std::string unwritable_cache();
 
 }  // namespace clray

@@ -3,8 +3,11 @@
 // programs. For host/device and host/pipeline.
 #pragma once
 
+#include <atomic>
 #include <map>
+#include <mutex>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "clray/device.hpp"
@@ -25,9 +28,25 @@ struct Device::Impl {
     std::map<std::string, std::string> defines;   ///< capability defines: from extensions and quirks.def
     std::map<std::string, cl::Program> programs;  ///< programs built so far, by build options and source
   };
-  std::vector<Opened> devices;  ///< never empty
+  std::vector<Opened> devices;        ///< never empty
+  std::mutex busy;                    ///< held by a DeviceUse
+  std::atomic<std::thread::id> user;  ///< the thread of that DeviceUse; none: thread::id()
 };
 
 using OpenedDevice = Device::Impl::Opened;
+
+/// Holds a device for one call of the public API. Other threads wait for it, since queue, programs and kernels serve
+/// one call at a time. A call that comes from within another (by a callback) would wait for itself: it throws
+/// Error(usage).
+class DeviceUse {
+ public:
+  explicit DeviceUse(Device& device);
+  ~DeviceUse();
+  DeviceUse(const DeviceUse&) = delete;
+  DeviceUse& operator=(const DeviceUse&) = delete;
+
+ private:
+  Device::Impl& impl_;
+};
 
 }  // namespace clray

@@ -3,12 +3,9 @@
 #include "device/platforms.hpp"
 
 #include <fmt/format.h>
-#include <stdlib.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
-#include <filesystem>
 #include <functional>
 #include <mutex>
 
@@ -18,42 +15,7 @@
 namespace clray {
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr cl_device_type kCpuAndGpu = CL_DEVICE_TYPE_CPU | CL_DEVICE_TYPE_GPU;
-
-bool can_write_in(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  std::string name = (folder / "clray-probe-XXXXXX").string();
-  const int file = mkstemp(name.data());
-  if (file < 0) return false;
-  const bool written = write(file, "clray", 5) == 5;
-  close(file);
-  unlink(name.c_str());
-  return written;
-}
-
-std::string& private_cache() {
-  static std::string folder;
-  return folder;
-}
-
-void remove_private_cache() {
-  std::error_code ignored;
-  fs::remove_all(private_cache(), ignored);
-}
-
-void prepare_environment_once() {
-  setenv("POCL_SIGFPE_HANDLER", "0", 1);
-  if (can_write_in(kernel_cache_folder())) return;
-  std::error_code error;
-  std::string name = (fs::temp_directory_path(error) / "clray-kernels-XXXXXX").string();
-  if (error || !mkdtemp(name.data())) return;  // PoCL alone needs the folder, and will say that a build failed
-  private_cache() = name;
-  setenv("POCL_CACHE_DIR", name.c_str(), 1);
-  atexit(remove_private_cache);
-}
 
 std::string lower(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
@@ -154,11 +116,6 @@ std::vector<FoundDevice> by_name(const std::vector<FoundDevice>& devices, const 
 
 }  // namespace
 
-void prepare_environment() {
-  static std::once_flag once;
-  std::call_once(once, prepare_environment_once);
-}
-
 std::string device_type_name(cl_device_type type) {
   std::string text;
   const auto add = [&](cl_device_type bit, const char* name) {
@@ -172,7 +129,10 @@ std::string device_type_name(cl_device_type type) {
 }
 
 std::vector<FoundDevice> find_devices() {
-  prepare_environment();
+  // A driver sets itself up at its first call. PoCL 3.1 tells all but one of the threads that call it meanwhile that
+  // it has no device, and may crash.
+  static std::mutex first_call;
+  const std::lock_guard<std::mutex> lock(first_call);
   std::vector<cl::Platform> platforms;
   try {
     cl::Platform::get(&platforms);
@@ -199,6 +159,7 @@ std::vector<FoundDevice> find_devices() {
 
 std::vector<FoundDevice> choose_devices(const std::vector<FoundDevice>& devices, const std::string& choice) {
   if (devices.empty()) {
+    if (!kernel_cache_writable()) throw Error(ErrorCode::device, "no OpenCL device found; " + unwritable_cache());
     throw Error(ErrorCode::device,
                 "no OpenCL device found; for the CPU install the packages ocl-icd-libopencl1 and pocl-opencl-icd, "
                 "for a GPU its vendor's OpenCL driver");
@@ -276,7 +237,26 @@ Device::Device(Device&&) noexcept = default;
 Device& Device::operator=(Device&&) noexcept = default;
 
 const DeviceInfo& Device::info() const {
-  return impl_->devices.front().info;
+  return const_cast<Device*>(this)->impl().devices.front().info;
+}
+
+Device::Impl& Device::impl() {
+  if (!impl_) throw Error(ErrorCode::usage, "this Device was moved from");
+  return *impl_;
+}
+
+DeviceUse::DeviceUse(Device& device) : impl_(device.impl()) {
+  // Only this thread can have put its own id there, so the answer cannot change meanwhile.
+  if (impl_.user == std::this_thread::get_id()) {
+    throw Error(ErrorCode::usage, "the device is busy with the call that this one comes from", device.info().name);
+  }
+  impl_.busy.lock();
+  impl_.user = std::this_thread::get_id();
+}
+
+DeviceUse::~DeviceUse() {
+  impl_.user = std::thread::id();
+  impl_.busy.unlock();
 }
 
 }  // namespace clray

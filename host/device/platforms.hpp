@@ -29,9 +29,4 @@ std::string device_type_name(cl_device_type type);
 /// Makes context and queue, and works out the capabilities. No self-test.
 OpenedDevice open_device(const FoundDevice& found);
 
-/// Sets PoCL's environment as clray needs it: before the first OpenCL call, once. Called by find_devices.
-/// PoCL's handler would turn a host division by zero into 0, and an unwritable kernel cache fails every build with
-/// an empty log: a private cache folder, removed at exit, takes its place.
-void prepare_environment();
-
 }  // namespace clray

@@ -70,6 +70,7 @@ cl::Program build_source(OpenedDevice& opened, const std::string& entry, const s
     } catch (const cl::Error& error) {
       std::string log = first_lines(build_log(program, opened.device));
       if (log.empty()) log = "(the build log is empty)";
+      if (!kernel_cache_writable()) log += "\n" + unwritable_cache();
       throw Error(ErrorCode::device,
                   fmt::format("{} does not build with {} ({}):\n{}", entry, flags, cl_error_name(error.err()), log),
                   opened.info.name);

@@ -9,6 +9,7 @@ namespace clray {
 
 void sample_shots_on(Device& device, const DeviceShots& request, std::vector<double>* time_ns,
                      std::vector<std::uint32_t>* kind) {
+  const DeviceUse use(device);
   OpenedDevice& opened = device.impl().devices.front();
   const cl::Program program = build_program(opened, "slr/shots.cl", {});
   cl::Kernel kernel = make_kernel(opened, program, "slr_shots");

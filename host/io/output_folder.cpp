@@ -13,6 +13,7 @@
 #include <cstring>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <random>
 #include <set>
 
 #include "clray/error.hpp"
@@ -131,16 +132,26 @@ OutputFolder::OutputFolder(const std::string& target) : target_(resolve(target))
       fail_output("make the folder", *parent, code);
     }
   }
-  std::string name = (target_.parent_path() / ("." + target_.filename().string().substr(0, 200) + ".XXXXXX")).string();
-  if (!::mkdtemp(name.data())) {
-    const int code = errno;
+  if (const int code = make_temporary()) {
     remove_leftovers();
     fail_output("write in the folder", target_.parent_path(), code);
   }
-  temporary_ = name;
-  const mode_t mask = ::umask(0);
-  ::umask(mask);
-  ::chmod(name.c_str(), 0777 & ~mask);
+}
+
+/// Makes the unfinished folder beside the target, hidden, under a name that nobody has. Returns an errno or 0.
+int OutputFolder::make_temporary() {
+  // Not mkdtemp: the result is to have the permissions that the process gives to folders.
+  std::random_device random;
+  const std::string stem = "." + target_.filename().string().substr(0, 200) + ".";
+  for (int attempt = 0; attempt < 100; ++attempt) {
+    const fs::path name = target_.parent_path() / (stem + hex16(random()).substr(8));
+    if (::mkdir(name.c_str(), 0777) == 0) {
+      temporary_ = name;
+      return 0;
+    }
+    if (errno != EEXIST) return errno;
+  }
+  return EEXIST;
 }
 
 OutputFolder::~OutputFolder() {

@@ -30,6 +30,7 @@ class OutputFolder {
   void commit();
 
  private:
+  int make_temporary();
   void remove_leftovers() noexcept;
 
   std::filesystem::path target_, temporary_;

@@ -269,14 +269,6 @@ class PassDriver {
   PassOutcome out_;
 };
 
-void check_options(const TraceOptions& o) {
-  const auto bad = [](const std::string& what) { throw Error(ErrorCode::usage, what); };
-  if (o.replicates < 2 || o.replicates > 64) bad(fmt::format("replicates = {}: 2 to 64 expected", o.replicates));
-  if (o.max_bounces < 1 || o.max_bounces > 64) bad(fmt::format("max_bounces = {}: 1 to 64 expected", o.max_bounces));
-  if (!(o.target_error_percent >= 0.0)) bad("the target error must be a positive percentage");
-  if (o.work_group_size < 1 || o.work_group_size > 1024) bad("the work-group size must be 1 to 1024");
-}
-
 void check_diagnostics(const Result& result, bool allowed) {
   const Diagnostics& d = result.diagnostics;
   if (d.non_finite + d.stack_overflow + d.accumulator_overflow == 0 || allowed) return;
@@ -295,7 +287,8 @@ void add_unique(const std::vector<std::string>& from, std::vector<std::string>* 
 }  // namespace
 
 Result trace(const Scene& scene, Device& device, const TraceHooks& hooks) {
-  check_options(scene.trace);
+  check_scene(scene);
+  const DeviceUse use(device);
   const double start = now();
   Result result;
   result.device = device.info();
@@ -363,9 +356,10 @@ Result trace(const Scene& scene, Device& device, const TraceHooks& hooks) {
 }
 
 std::string kernel_source(const Scene& scene, Device& device) {
+  check_scene(scene);
+  const DeviceUse use(device);
   const Geometry geometry = build_geometry(scene);
   const std::vector<PassPlan> plans = plan_passes(scene, geometry);
-  if (plans.empty()) throw Error(ErrorCode::input, "the scene has no detector");
   return program_source(device.impl().devices.front(), "trace.cl", plans.front().options);
 }
 

@@ -220,6 +220,7 @@ void check_trace(const TraceOptions& o) {
   check_number("trace.time_limit_s", o.time_limit_s, kNotNegative);
   check_number("trace.replicates", o.replicates, {2.0, 64.0, true, true});
   check_number("trace.max_rays", static_cast<double>(o.max_rays), {1.0, 0x1p40, true, true});
+  check_number("trace.work_group_size", o.work_group_size, {1.0, 1024.0, true, true});
   check_number("trace.rays", static_cast<double>(o.rays), {0.0, 0x1p40, true, true});
 }
 

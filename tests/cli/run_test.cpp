@@ -144,3 +144,14 @@ TEST_CASE("a signal ends early: what is finished is saved and marked, status 128
     CHECK(result["rays"].get<double>() < std::pow(2.0, 36));
   }
 }
+
+TEST_CASE("where the folder of compiled kernels cannot be written, a temporary one serves and is gone afterwards") {
+  const Scratch scratch;
+  spit(scratch / "square.obj", square());
+  std::filesystem::create_directory(scratch / "tmp");
+  const auto outcome =
+      clray(scratch, run_of({"--no-plots"}), {"POCL_CACHE_DIR=/proc/nowhere", "TMPDIR=" + (scratch / "tmp")});
+  CAPTURE(outcome.err);
+  CHECK(outcome.status == 0);
+  CHECK(std::filesystem::is_empty(scratch / "tmp"));
+}

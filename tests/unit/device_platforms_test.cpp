@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Listing and choosing devices, the kernel cache's folder, error names, buffers.
 #include <doctest/doctest.h>
-#include <stdlib.h>
 
 #include <cstdint>
 
@@ -116,12 +115,6 @@ TEST_CASE("this machine's devices are listed, those of one platform together") {
     CHECK(list[i].memory_GiB > 0.0);
     if (i > 0) CHECK(list[i - 1].platform <= list[i].platform);
   }
-}
-
-TEST_CASE("the environment is prepared before the first OpenCL call") {
-  list_devices();
-  REQUIRE(getenv("POCL_SIGFPE_HANDLER"));
-  CHECK(std::string(getenv("POCL_SIGFPE_HANDLER")) == "0");
 }
 
 TEST_CASE("buffers carry data there and back") {

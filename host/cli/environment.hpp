@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// The environment of the process, which belongs to the program and never to the library: PoCL reads its settings
+// there at its first call.
+#pragma once
+
+#include <string>
+
+namespace clray::cli {
+
+/// Sets PoCL's variables for as long as it lives; made before the first thread and the first OpenCL call.
+/// PoCL's handler would turn a host division by zero into 0. A folder of compiled kernels that cannot be written fails
+/// every build: a temporary one takes its place.
+class Environment {
+ public:
+  Environment();
+  ~Environment();
+  Environment(const Environment&) = delete;
+  Environment& operator=(const Environment&) = delete;
+
+ private:
+  std::string temporary_kernels_;
+};
+
+}  // namespace clray::cli
