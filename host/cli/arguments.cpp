@@ -5,8 +5,11 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <limits>
+#include <type_traits>
 
 #include "clray/error.hpp"
+#include "clray/keys.hpp"
 #include "text/near_miss.hpp"
 
 namespace clray::cli {
@@ -42,6 +45,17 @@ std::string suggestion(const CLI::App& app, const std::string& word) {
   return near.empty() ? "" : "; did you mean " + near + "?";
 }
 
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+/// What --list knows, for messages.
+std::string lists() {
+  return "devices, " + joined(table_names());
+}
+
 /// Help in lines of at most 66 characters; CLI11 indents what follows a line break.
 std::string wrapped(const std::string& text) {
   constexpr std::size_t kWidth = 66;
@@ -62,6 +76,16 @@ std::string wrapped(const std::string& text) {
   return lines;
 }
 
+/// Help of an option that sets a key: what the key's table says, then `more`.
+std::string key_help(const std::string& of, const std::string& name, const std::string& more = {}) {
+  for (const KeyInfo& key : scene_keys(of)) {
+    if (key.name != name) continue;
+    const std::string fallback = key.fallback == "none" || !more.empty() ? "" : " [" + key.fallback + "]";
+    return key.meaning + ": " + key.values + (more.empty() ? "" : "; " + more) + fallback;
+  }
+  throw Error(ErrorCode::bug, "there is no key '" + name + "' in '" + of + "'");
+}
+
 /// An option with one value, kept as text; `value` is a string or an optional one.
 template <class Text>
 void text_option(CLI::App& app, const std::string& name, Text& value, const std::string& value_name,
@@ -73,10 +97,9 @@ void text_option(CLI::App& app, const std::string& name, Text& value, const std:
 void add_options(CLI::App& app, Arguments& a, Texts& t) {
   const std::string scene = "Scene", run = "Run", output = "Output", ask = "Questions", test = "For tests of identity";
   app.add_option("SCENE", a.scene, "mesh (.obj .ply .stl .off) or scene file (.toml)")->type_name("");
-  app.add_option(
-         "--detector", a.scene_options.detectors,
-         wrapped("what is measured, may be repeated: delay, spectrometer, pressure, rgb, hyperspectral; replaces the "
-                 "scene file's list [delay for a mesh]"))
+  app.add_option("--detector", a.scene_options.detectors,
+                 wrapped("what is measured, may be repeated: " + joined(table_rows("detector")) +
+                         "; replaces the scene file's list [delay for a mesh]"))
       ->type_name("KIND")
       ->group(scene)
       ->expected(1)
@@ -92,19 +115,18 @@ void add_options(CLI::App& app, Arguments& a, Texts& t) {
               scene);
   text_option(app, "--length-unit", t.unit, "UNIT", "unit of mesh files: m, cm, mm, in, ft or a number of metres [m]",
               scene);
-  text_option(app, "--bins", t.bins, "N", "bins of the delay histogram, 1 to 1e7 [512]", scene);
-  text_option(app, "--max-bounces", t.bounces, "N", "surface interactions, 1 to 64 [1]", scene);
+  text_option(app, "--bins", t.bins, "N", "bins " + key_help("delay", "bins"), scene);
+  text_option(app, "--max-bounces", t.bounces, "N", key_help("trace", "max_bounces"), scene);
 
   text_option(app, "--device", a.device, "cpu|gpu|all|INDEX|NAME",
               "where to compute, by kind, number or part of the name [a GPU if there is one, else the CPU]", run);
-  text_option(app, "--rays", t.rays, "N", "primary rays per orientation: 65536, 1e6, 2^22, 4M; rounded up to 16*2^k",
-              run);
+  text_option(app, "--rays", t.rays, "N", key_help("trace", "rays", "such as 65536, 1e6, 2^22, 4M"), run);
   text_option(app, "--target-error", t.target, "P%",
-              "stop when the 95 % interval is within P % of the value [1%, with at least 2^22 rays]", run);
-  text_option(app, "--time-limit", t.time, "T", "stop tracing after 30, 30s, 500ms, 5m, 2h with what is finished", run);
-  text_option(app, "--seed", t.seed, "N",
-              "seed of all random numbers; the same seed gives the same result, bit for bit [1]", run);
-  text_option(app, "--sampler", t.sampler, "sobol|random", "how rays are spread [sobol]", run);
+              key_help("trace", "target_error_percent", "in % [1%, with at least 2^22 rays]"), run);
+  text_option(app, "--time-limit", t.time, "T", key_help("trace", "time_limit_s", "such as 30, 30s, 500ms, 5m, 2h"),
+              run);
+  text_option(app, "--seed", t.seed, "N", key_help("trace", "seed"), run);
+  text_option(app, "--sampler", t.sampler, "NAME", key_help("trace", "sampler"), run);
 
   text_option(app, "--out", a.out, "DIR",
               "folder of the result; an older clray result there is replaced, nothing else is [clray-out/<scene>]",
@@ -117,8 +139,8 @@ void add_options(CLI::App& app, Arguments& a, Texts& t) {
   app.add_flag("--explain", a.explain, wrapped("what was compiled in and what was left out for this scene, and why"))
       ->group(output);
 
-  app.add_option("--list", a.list, "print the devices, or the rows of a table, and end")
-      ->type_name("devices|brdf|shape|detector")
+  app.add_option("--list", a.list, wrapped("print the devices, or a table of what scenes may say, and end: " + lists()))
+      ->type_name("NAME")
       ->group(ask)
       ->expected(1);
   app.add_flag("--check", a.check, wrapped("check the scene, print what was understood, trace nothing"))->group(ask);
@@ -135,29 +157,45 @@ void add_options(CLI::App& app, Arguments& a, Texts& t) {
   text_option(app, "--slice-points", t.slice, "N", "points per replicate and launch [sized to time]", test);
 }
 
-int small_count(const std::string& text, const std::string& option, std::uint64_t most) {
+std::uint64_t count_up_to(std::uint64_t most, const std::string& text, const std::string& option) {
   const std::uint64_t value = parse_count(text, option);
-  if (value > most) {
-    throw Error(ErrorCode::usage, "'" + text + "' is too large; expected 1 to " + std::to_string(most), option);
+  if (value < 1 || value > most) {
+    throw Error(ErrorCode::usage, "'" + text + "': expected a whole number of 1 to " + std::to_string(most), option);
   }
-  return static_cast<int>(value);
+  return value;
 }
 
-/// What check_scene() allows.
-constexpr std::uint64_t kMostRays = std::uint64_t{1} << 40;
+/// A number or a word, as given in `text`, that a key takes.
+template <class Value>
+Value for_key(const std::string& name, const Value& value, const std::string& text, const std::string& option) {
+  std::string fault;
+  if constexpr (std::is_arithmetic_v<Value>) {
+    fault = key_fault("trace", name, static_cast<double>(value));
+  } else {
+    fault = key_fault("trace", name, value);
+  }
+  if (!fault.empty()) throw Error(ErrorCode::usage, "'" + text + "': " + fault, option);
+  return value;
+}
+
+std::uint64_t count_for_key(const std::string& name, const std::string& text, const std::string& option) {
+  return for_key(name, parse_count(text, option), text, option);
+}
 
 void parse_values(Arguments& a, const Texts& t) {
-  if (t.rays) {
-    a.rays = parse_count(*t.rays, "--rays");
-    if (*a.rays > kMostRays) throw Error(ErrorCode::usage, "'" + *t.rays + "' is too many; at most 2^40", "--rays");
+  constexpr std::uint64_t kLargestInt = std::numeric_limits<int>::max();
+  if (t.rays) a.rays = count_for_key("rays", *t.rays, "--rays");
+  if (t.target) {
+    const double percent = parse_percent(*t.target, "--target-error");
+    a.target_error_percent = for_key("target_error_percent", percent, *t.target, "--target-error");
   }
-  if (t.target) a.target_error_percent = parse_percent(*t.target, "--target-error");
-  if (t.time) a.time_limit_s = parse_duration(*t.time, "--time-limit");
-  if (t.bins) a.scene_options.bins = small_count(*t.bins, "--bins", 10000000);
-  if (t.bounces) a.max_bounces = small_count(*t.bounces, "--max-bounces", 64);
-  if (t.group) a.work_group = small_count(*t.group, "--work-group", 1024);
-  if (t.slice) a.slice_points = parse_count(*t.slice, "--slice-points");
-  if (t.seed) a.seed = t.seed == "0" ? 0 : parse_count(*t.seed, "--seed");
+  if (t.time)
+    a.time_limit_s = for_key("time_limit_s", parse_duration(*t.time, "--time-limit"), *t.time, "--time-limit");
+  if (t.bins) a.scene_options.bins = static_cast<int>(count_up_to(kLargestInt, *t.bins, "--bins"));
+  if (t.bounces) a.max_bounces = static_cast<int>(count_for_key("max_bounces", *t.bounces, "--max-bounces"));
+  if (t.group) a.work_group = static_cast<int>(count_up_to(1024, *t.group, "--work-group"));
+  if (t.slice) a.slice_points = count_up_to(std::numeric_limits<std::uint64_t>::max(), *t.slice, "--slice-points");
+  if (t.seed) a.seed = count_for_key("seed", *t.seed, "--seed");
   if (t.unit) a.scene_options.length_unit_m = parse_length_unit(*t.unit, "--length-unit");
   if (t.source) a.scene_options.source = parse_direction(*t.source, "--source");
   if (t.observer && *t.observer == "source") {
@@ -165,12 +203,7 @@ void parse_values(Arguments& a, const Texts& t) {
   } else if (t.observer) {
     a.scene_options.observer = parse_direction(*t.observer, "--observer");
   }
-  if (t.sampler) {
-    if (t.sampler != "sobol" && t.sampler != "random") {
-      throw Error(ErrorCode::usage, "'" + *t.sampler + "' is not a sampler; expected sobol or random", "--sampler");
-    }
-    a.sobol = t.sampler == "sobol";
-  }
+  if (t.sampler) a.sobol = for_key("sampler", *t.sampler, *t.sampler, "--sampler") == "sobol";
 }
 
 /// CLI11's words about what is wrong, in ours.
@@ -191,11 +224,11 @@ void parse_values(Arguments& a, const Texts& t) {
 
 void check_whole(const Arguments& a) {
   if (!a.list.empty()) {
-    const bool known = a.list == "devices" || a.list == "brdf" || a.list == "shape" || a.list == "detector";
-    if (!known)
-      throw Error(ErrorCode::usage, "there is no list '" + a.list + "'; expected devices, brdf, shape or detector",
-                  "--list");
-    return;
+    const std::vector<std::string>& tables = table_names();
+    if (a.list == "devices" || std::find(tables.begin(), tables.end(), a.list) != tables.end()) return;
+    throw Error(ErrorCode::usage,
+                "there is no list '" + a.list + "'; expected one of " + lists() + text::did_you_mean(a.list, tables),
+                "--list");
   }
   if (a.scene.empty()) {
     throw Error(ErrorCode::usage,

@@ -14,6 +14,7 @@
 #include "arguments.hpp"
 #include "clray/device.hpp"
 #include "clray/error.hpp"
+#include "clray/keys.hpp"
 #include "clray/result.hpp"
 #include "clray/session.hpp"
 #include "environment.hpp"

@@ -36,13 +36,10 @@ double number(const std::string& text, const std::string& option, const std::str
 }  // namespace
 
 std::uint64_t parse_count(const std::string& text, const std::string& option) {
-  const std::string expected = "a whole number of at least 1, such as 65536, 1e6, 2^22 or 4M";
+  const std::string expected = "a whole number such as 65536, 1e6, 2^22 or 4M";
   std::uint64_t whole = 0;
   const auto [after, error] = std::from_chars(text.data(), text.data() + text.size(), whole);
-  if (error == std::errc{} && after == text.data() + text.size()) {
-    if (whole == 0) reject(option, text, expected);
-    return whole;
-  }
+  if (error == std::errc{} && after == text.data() + text.size()) return whole;
   double value = 0.0;
   std::string rest;
   if (!leading_number(text, value, rest)) reject(option, text, expected);
@@ -59,13 +56,13 @@ std::uint64_t parse_count(const std::string& text, const std::string& option) {
     value *= 1e9;
   else if (!rest.empty())
     reject(option, text, expected);
-  if (!(value >= 1.0) || value != std::floor(value)) reject(option, text, expected);
+  if (!(value >= 0.0) || value != std::floor(value)) reject(option, text, expected);
   if (value > 9.0e18) reject(option, text, expected + ", at most 9e18");
   return static_cast<std::uint64_t>(value);
 }
 
 double parse_duration(const std::string& text, const std::string& option) {
-  const std::string expected = "a time above 0, such as 30, 30s, 500ms, 5m or 2h";
+  const std::string expected = "a time such as 30, 30s, 500ms, 5m or 2h";
   double value = 0.0;
   std::string unit;
   if (!leading_number(text, value, unit)) reject(option, text, expected);
@@ -77,16 +74,13 @@ double parse_duration(const std::string& text, const std::string& option) {
     value *= 3600.0;
   else if (!unit.empty() && unit != "s")
     reject(option, text, expected);
-  if (!(value > 0.0)) reject(option, text, expected);
   return value;
 }
 
 double parse_percent(const std::string& text, const std::string& option) {
-  const std::string expected = "a percentage above 0 and up to 100, such as 1 or 0.1%";
+  const std::string expected = "a percentage such as 1 or 0.1%";
   const bool sign = !text.empty() && text.back() == '%';
-  const double value = number(sign ? text.substr(0, text.size() - 1) : text, option, expected);
-  if (!(value > 0.0) || value > 100.0) reject(option, text, expected);
-  return value;
+  return number(sign ? text.substr(0, text.size() - 1) : text, option, expected);
 }
 
 Vec3 parse_direction(const std::string& text, const std::string& option) {

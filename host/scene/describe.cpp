@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// describe_scene() and list_table(): what clray understood and what it offers, as aligned text for a person.
-// Lengths in m, angles in degrees, whatever the file's units were.
+// describe_scene(): what clray understood, as aligned text for a person. Meshes and places in m and degrees; values of
+// keys in the units of the keys' names.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "clray/error.hpp"
 #include "clray/scene.hpp"
+#include "scene/keys.hpp"
 #include "scene/motion.hpp"
-#include "scene/spectrum.hpp"
 #include "scene/tables.hpp"
 #include "shared/portable.h"
 #include "text/columns.hpp"
@@ -132,63 +131,8 @@ std::string body_text(const Scene& scene) {
   return text + fmt::format("variants ({})\n{}", scene.variants.size(), variants.text("  "));
 }
 
-std::string source_text(const Scene& scene) {
-  const Source& s = scene.source;
-  if (s.kind == Source::Kind::laser)
-    return fmt::format("laser {:.6g} nm toward {}", s.wavelength_nm, vector_text(s.direction));
-  const std::string light = s.spectrum && s.blackbody_K <= 0.0
-                                ? "spectrum of " + count_text(s.spectrum->value.size(), "point")
-                                : fmt::format("black body of {:.6g} K, {:.6g} W/m2",
-                                              s.blackbody_K > 0.0 ? s.blackbody_K : 5772.0, s.irradiance_W_m2);
-  std::string text = fmt::format("sun toward {}, {}; bands", vector_text(s.direction), light);
-  const std::vector<Band> bands = bands_of(scene);
-  constexpr std::size_t kMost = 8;
-  for (std::size_t i = 0; i < std::min(bands.size(), kMost); ++i) {
-    const Band& b = bands[i];
-    const std::string range = b.response ? fmt::format("{} (curve {:.6g}-{:.6g} nm", b.name, b.low_nm, b.high_nm)
-                              : b.name == make_band(b.low_nm, b.high_nm).name
-                                  ? b.name + " nm ("
-                                  : fmt::format("{} ({:.6g}-{:.6g} nm", b.name, b.low_nm, b.high_nm);
-    text += fmt::format("{} {}{}{:.6g} W/m2)", i > 0 ? "," : "", range, range.back() == '(' ? "" : ", ",
-                        source_band_W_m2(s, b));
-  }
-  if (bands.size() > kMost)
-    text += fmt::format(" and {} more up to {:.6g} nm", bands.size() - kMost, bands.back().high_nm);
-  return text;
-}
-
 std::string motion_text(const Motion& m) {
-  const std::string steps = count_text(orientation_count(m), "orientation");
-  if (!m.attitudes.empty()) {
-    return fmt::format("table of {}, {:.6g} s to {:.6g} s: {}", count_text(m.attitudes.size(), "attitude"),
-                       m.attitudes.front().time_s, m.attitudes.back().time_s, steps);
-  }
-  return fmt::format(
-      "spin about {}, period {:.6g} s, phase {:.6g} deg, {:.6g} s to {:.6g} s in steps of {:.6g} deg: {}",
-      vector_text(m.axis), m.period_s, degrees(m.phase_rad), m.start_s, m.stop_s, degrees(m.step_rad), steps);
-}
-
-std::string station_text(const Station& s) {
-  const std::string range = !s.cpf_file.empty() ? "range from " + s.cpf_file
-                            : !s.ranges.empty() ? "range from a table of " + count_text(s.ranges.size(), "row")
-                                                : fmt::format("range {:.6g} m", s.range_m);
-  const std::string pulse = !s.pulse.empty()       ? "a pulse of " + count_text(s.pulse.size(), "point")
-                            : s.pulse_fwhm_s > 0.0 ? fmt::format("{:.6g} ps FWHM", s.pulse_fwhm_s * 1e12)
-                                                   : "delta pulse";
-  return fmt::format(
-      "{}: {}, {:.6g} J, {}, {:.6g} Hz, aperture {:.6g} m, divergence {:.6g} urad, noise {:.6g}/ns, gate {:.6g} ns",
-      s.name, range, s.pulse_energy_J, pulse, s.rate_Hz, s.aperture_m, s.divergence_rad * 1e6, s.noise_per_ns,
-      s.gate_s * 1e9);
-}
-
-std::string trace_text(const TraceOptions& o) {
-  std::string text = fmt::format("{}, seed {}, {} replicates, {} samples",
-                                 count_text(static_cast<std::size_t>(o.max_bounces), "bounce"), o.seed, o.replicates,
-                                 o.sobol ? "Sobol" : "random");
-  if (o.rays > 0) text += fmt::format(", {} rays", o.rays);
-  if (o.target_error_percent > 0.0) text += fmt::format(", to {:.6g} %", o.target_error_percent);
-  if (o.time_limit_s > 0.0) text += fmt::format(", at most {:.6g} s", o.time_limit_s);
-  return text;
+  return key_text(m) + ": " + count_text(orientation_count(m), "orientation");
 }
 
 }  // namespace
@@ -196,44 +140,20 @@ std::string trace_text(const TraceOptions& o) {
 std::string describe_scene(const Scene& scene) {
   Columns lines;
   if (scene.reference_point != Vec3(0.0)) lines.add({"reference", vector_text(scene.reference_point) + " m"});
-  lines.add({"source", source_text(scene)});
-  for (const Observer& o : scene.observers) {
-    std::string text = o.monostatic ? "at the source" : "toward " + vector_text(o.direction);
-    if (o.range_m > 0.0) text += fmt::format(", at {:.6g} m", o.range_m);
-    if (o.acceptance_rad > 0.0) text += fmt::format(", cone of {:.6g} mrad", o.acceptance_rad * 1e3);
-    lines.add({"observer", o.name.empty() ? text : o.name + ": " + text});
-  }
+  lines.add({"source", key_text(scene.source)});
+  for (const Observer& o : scene.observers) lines.add({"observer", key_text(o)});
   if (scene.motion) lines.add({"motion", motion_text(*scene.motion)});
-  if (scene.station) lines.add({"station", station_text(*scene.station)});
+  if (scene.station) lines.add({"station", key_text(*scene.station)});
   for (const DetectorSpec& d : scene.detectors) {
     const TableRow& row = table_row("detector", d.kind);
     const std::string options = row_text(row, d.parameters);
     const std::string what = d.name == d.kind ? d.kind : d.name + ": " + d.kind;
     lines.add({"detector", what + (options.empty() ? "" : ", " + options)});
   }
-  lines.add({"trace", trace_text(scene.trace)});
+  lines.add({"trace", key_text(scene.trace)});
   std::string text =
       fmt::format("scene {}\n{}{}", scene.path.empty() ? scene.name : scene.path, body_text(scene), lines.text(""));
   for (const std::string& warning : scene.warnings) text += "warning: " + warning + "\n";
-  return text;
-}
-
-std::string list_table(const std::string& kind) {
-  if (kind != "brdf" && kind != "shape" && kind != "detector") {
-    throw Error(ErrorCode::usage, "expected devices, brdf, shape or detector, found '" + kind + "'", "--list");
-  }
-  std::string text;
-  for (const TableRow& row : table(kind)) {
-    Columns lines;
-    for (const TableKey& key : row.keys) {
-      const std::string value = !key.default_key.empty()        ? key.default_key
-                                : std::isnan(key.default_value) ? "none"
-                                : key.is_switch                 ? (key.default_value != 0.0 ? "true" : "false")
-                                                                : fmt::format("{:.6g}", key.default_value);
-      lines.add({key.name, value, key.is_switch ? "true or false" : key.range, key.meaning});
-    }
-    text += row.name + ": " + row.meaning + "\n" + lines.text("    ");
-  }
   return text;
 }
 

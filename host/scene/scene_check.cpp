@@ -8,11 +8,13 @@
 #include <set>
 
 #include "clray/error.hpp"
+#include "scene/keys.hpp"
 #include "scene/material.hpp"
 #include "scene/motion.hpp"
 #include "scene/scene_parts.hpp"
 #include "scene/spectrum.hpp"
 #include "scene/tables.hpp"
+#include "scene/value_checks.hpp"
 
 namespace clray {
 namespace {
@@ -21,30 +23,7 @@ namespace {
   throw Error(ErrorCode::input, message, where);
 }
 
-void check_number(const std::string& where, double value, const Range& r) {
-  const bool low = r.low_included ? value >= r.low : value > r.low;
-  const bool high = r.high_included ? value <= r.high : value < r.high;
-  if (!std::isfinite(value) || !low || !high) {
-    fail(where, fmt::format("expected a number in {}, found {}", range_text(r), value));
-  }
-}
-
-void check_vector(const std::string& where, const Vec3& v) {
-  for (int i = 0; i < 3; ++i) {
-    if (!std::isfinite(v[i])) fail(where, "expected three finite numbers");
-  }
-}
-
-void check_unit(const std::string& where, const Vec3& v) {
-  check_vector(where, v);
-  const double square = v.x * v.x + v.y * v.y + v.z * v.z;
-  // A vector normalised in any sensible way is within a few ulp; 1e-12 allows for single steps of arithmetic after.
-  if (!(std::fabs(square - 1.0) <= 1e-12)) {
-    fail(where, fmt::format("expected a unit vector, found length {}", std::sqrt(square)));
-  }
-}
-
-void check_keys(const std::string& where, const TableRow& row, const std::map<std::string, double>& parameters) {
+void check_row(const std::string& where, const TableRow& row, const std::map<std::string, double>& parameters) {
   std::vector<std::string> known;
   for (const TableKey& key : row.keys) known.push_back(key.name);
   for (const auto& [name, value] : parameters) {
@@ -68,20 +47,6 @@ const TableRow& row_of(const std::string& where, const std::string& kind, const 
   return table(kind)[static_cast<std::size_t>(index)];
 }
 
-void check_spectrum(const std::string& where, const Spectrum& s, const TableKey* key) {
-  if (s.wavelength_nm.empty() || s.wavelength_nm.size() != s.value.size())
-    fail(where, "expected one value per wavelength");
-  for (std::size_t i = 0; i < s.value.size(); ++i) {
-    check_number(where, s.wavelength_nm[i], kPositive);
-    if (i > 0 && !(s.wavelength_nm[i] > s.wavelength_nm[i - 1])) fail(where, "wavelengths must increase");
-    std::string expected;
-    if (key != nullptr && !key_accepts(*key, s.value[i], &expected)) {
-      fail(where, fmt::format("expected {}, found {}", expected, s.value[i]));
-    }
-    if (key == nullptr) check_number(where, s.value[i], kNotNegative);
-  }
-}
-
 void check_table(const std::string& where, const BrdfTable& t) {
   for (const std::vector<double>* axis : {&t.theta_i_rad, &t.theta_o_rad, &t.phi_rad}) {
     if (axis->empty() || !std::is_sorted(axis->begin(), axis->end(), std::less_equal<double>())) {
@@ -96,7 +61,7 @@ void check_table(const std::string& where, const BrdfTable& t) {
 
 void check_material(const std::string& where, const Material& m) {
   const TableRow& row = row_of(where + ".model", "brdf", m.model);
-  check_keys(where, row, m.parameters);
+  check_row(where, row, m.parameters);
   check_number(where + ".infrared_reflectance", m.infrared_reflectance, kShare);
   for (const auto& [name, spectrum] : m.spectra) {
     const TableKey* key = find_key(row, name);
@@ -111,7 +76,7 @@ void check_material(const std::string& where, const Material& m) {
 
 void check_component(const std::string& where, const Scene& scene, const Component& c) {
   const TableRow& row = row_of(where + ".shape", "shape", c.shape);
-  check_keys(where, row, c.parameters);
+  check_row(where, row, c.parameters);
   const std::string fault = shape_fault(c);
   if (!fault.empty()) fail(where, fault);
   std::size_t slots = 1;
@@ -146,82 +111,20 @@ void check_component(const std::string& where, const Scene& scene, const Compone
 }
 
 void check_source(const Source& s) {
-  check_unit("source.direction", s.direction);
-  if (s.kind == Source::Kind::laser) check_number("source.wavelength_nm", s.wavelength_nm, kPositive);
-  if (s.spectrum) check_spectrum("source.spectrum", *s.spectrum, nullptr);
-  check_number("source.blackbody_K", s.blackbody_K, kNotNegative);
-  check_number("source.irradiance_W_m2", s.irradiance_W_m2, kPositive);
-  for (const Band& b : s.bands) {
-    check_number("source.bands", b.low_nm, kPositive);
-    check_number("source.bands", b.high_nm, {b.low_nm, kInfinity, false, false});
-    if (b.response) check_spectrum("source.bands.response", *b.response, nullptr);
-  }
+  check_keys("source", s);
   const std::string fault = source_fault(s);
   if (!fault.empty()) fail("source.bands", fault);
 }
 
 void check_motion(const Motion& m) {
-  check_number("motion.start_s", m.start_s, kAny);
+  check_keys("motion", m);
   check_number("motion.stop_s", m.stop_s, {m.start_s, kInfinity, true, false});
-  if (m.attitudes.empty()) {
-    check_unit("motion.axis", m.axis);
-    check_number("motion.period_s", m.period_s, kPositive);
-    check_number("motion.phase_rad", m.phase_rad, kAny);
-    check_number("motion.step_rad", m.step_rad, kPositive);
-  }
-  for (std::size_t i = 0; i < m.attitudes.size(); ++i) {
-    const Quaternion& q = m.attitudes[i].body_to_space;
-    const double square = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
-    check_number("motion.attitudes.time_s", m.attitudes[i].time_s, kAny);
-    if (i > 0 && !(m.attitudes[i].time_s > m.attitudes[i - 1].time_s)) fail("motion.attitudes", "times must increase");
-    if (!(std::fabs(square - 1.0) <= 1e-9)) fail("motion.attitudes", "expected quaternions of length 1");
-  }
-  if (!m.attitudes.empty() && !(m.start_s == 0.0 && m.stop_s == 0.0)) {
-    const double first = m.attitudes.front().time_s, last = m.attitudes.back().time_s;
-    check_number("motion.start_s", m.start_s, {first, last, true, true});
-    check_number("motion.stop_s", m.stop_s, {first, last, true, true});
-  }
   orientation_count(m);
 }
 
-void check_pairs(const std::string& where, const std::vector<std::pair<double, double>>& pairs, const Range& range) {
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    check_number(where, pairs[i].first, kAny);
-    check_number(where, pairs[i].second, range);
-    if (i > 0 && !(pairs[i].first > pairs[i - 1].first)) fail(where, "times must increase");
-  }
-}
-
-void check_station(const Station& s) {
-  check_number("station.range_m", s.range_m, kPositive);
-  check_pairs("station.ranges", s.ranges, kPositive);
-  check_pairs("station.pulse", s.pulse, kNotNegative);
-  check_vector("station.position_m", s.position_m);
-  if (!s.cpf_file.empty() && s.position_m == Vec3(0.0)) fail("station.position_m", "missing; a prediction needs it");
-  const std::pair<const char*, double> positive[] = {{"pulse_energy_J", s.pulse_energy_J},
-                                                     {"rate_Hz", s.rate_Hz},
-                                                     {"aperture_m", s.aperture_m},
-                                                     {"divergence_rad", s.divergence_rad},
-                                                     {"gate_s", s.gate_s}};
-  for (const auto& [name, value] : positive) check_number(std::string("station.") + name, value, kPositive);
-  const std::pair<const char*, double> not_negative[] = {
-      {"start_mjd", s.start_mjd},       {"pulse_fwhm_s", s.pulse_fwhm_s}, {"pointing_rad", s.pointing_rad},
-      {"noise_per_ns", s.noise_per_ns}, {"dark_per_ns", s.dark_per_ns},   {"jitter_fwhm_s", s.jitter_fwhm_s},
-      {"dead_time_s", s.dead_time_s}};
-  for (const auto& [name, value] : not_negative) check_number(std::string("station.") + name, value, kNotNegative);
-  const std::pair<const char*, double> shares[] = {
-      {"eta_q", s.eta_q}, {"eta_t", s.eta_t}, {"eta_r", s.eta_r}, {"T_a", s.T_a}, {"T_c", s.T_c}};
-  for (const auto& [name, value] : shares) check_number(std::string("station.") + name, value, kShare);
-}
-
 void check_trace(const TraceOptions& o) {
-  check_number("trace.max_bounces", o.max_bounces, {1.0, 64.0, true, true});
-  check_number("trace.target_error_percent", o.target_error_percent, {0.0, 100.0, true, true});
-  check_number("trace.time_limit_s", o.time_limit_s, kNotNegative);
-  check_number("trace.replicates", o.replicates, {2.0, 64.0, true, true});
-  check_number("trace.max_rays", static_cast<double>(o.max_rays), {1.0, 0x1p40, true, true});
+  check_keys("trace", o);
   check_number("trace.work_group_size", o.work_group_size, {1.0, 1024.0, true, true});
-  check_number("trace.rays", static_cast<double>(o.rays), {0.0, 0x1p40, true, true});
 }
 
 /// Names that key results must differ, and one alone may be empty.
@@ -303,19 +206,16 @@ void check_scene(const Scene& scene) {
   }
   check_source(scene.source);
   for (std::size_t i = 0; i < scene.observers.size(); ++i) {
-    const std::string where = fmt::format("observers[{}]", i);
-    if (!scene.observers[i].monostatic) check_unit(where + ".direction", scene.observers[i].direction);
-    check_number(where + ".acceptance_rad", scene.observers[i].acceptance_rad, {0.0, 3.141592653589794, true, true});
-    check_number(where + ".range_m", scene.observers[i].range_m, kNotNegative);
+    check_keys(fmt::format("observers[{}]", i), scene.observers[i]);
   }
   for (std::size_t i = 0; i < scene.detectors.size(); ++i) {
     const std::string where = fmt::format("detectors[{}]", i);
-    check_keys(where, row_of(where + ".kind", "detector", scene.detectors[i].kind), scene.detectors[i].parameters);
+    check_row(where, row_of(where + ".kind", "detector", scene.detectors[i].kind), scene.detectors[i].parameters);
     const std::string fault = detector_fault(scene.detectors[i]);
     if (!fault.empty()) fail(where, fault);
   }
   if (scene.motion) check_motion(*scene.motion);
-  if (scene.station) check_station(*scene.station);
+  if (scene.station) check_keys("station", *scene.station);
   check_trace(scene.trace);
 }
 

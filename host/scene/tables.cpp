@@ -49,6 +49,12 @@ bool to_number(const std::string& text, double* value) {
     *value = negative ? -std::numeric_limits<double>::infinity() : std::numeric_limits<double>::infinity();
     return true;
   }
+  if (text.rfind("2^", 0) == 0) {
+    double power = 0.0;
+    if (!to_number(text.substr(2), &power)) return false;
+    *value = std::exp2(power);
+    return true;
+  }
   const auto end = text.data() + text.size();
   const auto read = std::from_chars(text.data(), end, *value);
   return read.ec == std::errc() && read.ptr == end && std::isfinite(*value);
@@ -64,30 +70,6 @@ std::string next_word(const std::string& text, std::size_t* at) {
   const std::size_t end = std::min(text.find(' ', begin), text.size());
   *at = end;
   return text.substr(begin, end - begin);
-}
-
-void parse_range(const std::string& row, TableKey* key) {
-  const std::string& range = key->range;
-  if (range == "{0,1}") {
-    key->is_switch = true;
-    key->low = 0.0;
-    key->high = 1.0;
-    return;
-  }
-  if (range.size() < 5) malformed(row, "range '" + range + "' of key '" + key->name + "'");
-  const std::size_t dots = range.find("..");
-  const std::size_t middle = dots != std::string::npos ? dots : range.find(',');
-  const char open = range.front(), close = range.back();
-  const bool brackets = (open == '[' || open == '(') && (close == ']' || close == ')');
-  if (middle == std::string::npos || !brackets) malformed(row, "range '" + range + "' of key '" + key->name + "'");
-  const std::size_t after = middle + (dots != std::string::npos ? 2 : 1);
-  if (!to_number(range.substr(1, middle - 1), &key->low) ||
-      !to_number(range.substr(after, range.size() - after - 1), &key->high) || !(key->low < key->high)) {
-    malformed(row, "range '" + range + "' of key '" + key->name + "'");
-  }
-  key->is_whole = dots != std::string::npos;
-  key->low_included = open == '[';
-  key->high_included = close == ']';
 }
 
 void parse_traits(const std::string& traits, TableRow* row) {
@@ -161,6 +143,37 @@ TableRow parse_row(const std::string& id, const std::string& name, const std::st
     if (at == keys.size()) malformed(id, "ends in ';'");
   }
   return row;
+}
+
+void parse_range(const std::string& row, TableKey* key) {
+  const std::string& range = key->range;
+  if (range == "{0,1}") {
+    key->is_switch = true;
+    key->low = 0.0;
+    key->high = 1.0;
+    return;
+  }
+  if (range.size() < 5) malformed(row, "range '" + range + "' of key '" + key->name + "'");
+  const std::size_t dots = range.find("..");
+  const std::size_t middle = dots != std::string::npos ? dots : range.find(',');
+  const char open = range.front(), close = range.back();
+  const bool brackets = (open == '[' || open == '(') && (close == ']' || close == ')');
+  if (middle == std::string::npos || !brackets) malformed(row, "range '" + range + "' of key '" + key->name + "'");
+  const std::size_t after = middle + (dots != std::string::npos ? 2 : 1);
+  if (!to_number(range.substr(1, middle - 1), &key->low) ||
+      !to_number(range.substr(after, range.size() - after - 1), &key->high) || !(key->low < key->high)) {
+    malformed(row, "range '" + range + "' of key '" + key->name + "'");
+  }
+  key->is_whole = dots != std::string::npos;
+  key->low_included = open == '[';
+  key->high_included = close == ']';
+}
+
+std::string range_words(const TableKey& key) {
+  if (key.is_switch) return "true or false";
+  if (!key.is_whole) return key.range;
+  const std::size_t dots = key.range.find("..");
+  return key.range.substr(1, dots - 1) + " to " + key.range.substr(dots + 2, key.range.size() - dots - 3);
 }
 
 bool key_accepts(const TableKey& key, double value, std::string* expected) {

@@ -48,6 +48,12 @@ const TableKey* find_key(const TableRow& row, const std::string& name);
 TableRow parse_row(const std::string& id, const std::string& name, const std::string& traits, const std::string& keys,
                    const std::string& meaning);
 
+/// Fills the key's bounds and kinds of number from its `range` as written; `row` names it in Error(bug).
+void parse_range(const std::string& row, TableKey* key);
+
+/// The range for a person: "(0,inf)", "1 to 64", "true or false".
+std::string range_words(const TableKey& key);
+
 /// Whether `value` may be given for `key`; if not, `expected` says what may ("a whole number in [1..1e7]").
 bool key_accepts(const TableKey& key, double value, std::string* expected = nullptr);
 

@@ -9,6 +9,7 @@
 #include <filesystem>
 
 #include "clray/error.hpp"
+#include "scene/value_checks.hpp"
 
 namespace clray {
 namespace {
@@ -110,14 +111,19 @@ double TomlTable::number(const std::string& key, const Range& range, std::option
   return value == nullptr ? *fallback : number_of(*value, key, range);
 }
 
-std::uint64_t TomlTable::whole(const std::string& key, std::uint64_t low, std::uint64_t high,
-                               std::optional<std::uint64_t> fallback) {
-  const toml::node* value = node(key);
-  const std::string expected = fmt::format("a whole number in [{},{}]", low, high);
-  if (value == nullptr) {
-    if (!fallback) missing(key, expected);
-    return *fallback;
-  }
+std::uint64_t TomlTable::whole(const std::string& key, std::uint64_t low, std::uint64_t high) {
+  TableKey row;
+  row.name = key;
+  row.range = fmt::format("[{}..{}]", low, high);
+  parse_range(key, &row);
+  return row_whole(row);
+}
+
+std::uint64_t TomlTable::row_whole(const TableKey& key) {
+  std::string expected;
+  key_accepts(key, 0.0, &expected);
+  const toml::node* value = node(key.name);
+  if (value == nullptr) missing(key.name, expected);
   std::optional<std::uint64_t> number;
   if (const auto* i = value->as_integer()) {
     if (i->get() >= 0) number = static_cast<std::uint64_t>(i->get());
@@ -126,8 +132,9 @@ std::uint64_t TomlTable::whole(const std::string& key, std::uint64_t low, std::u
       number = static_cast<std::uint64_t>(d->get());
     }
   }
-  if (!number || *number < low || *number > high)
-    fail(key, fmt::format("expected {}, found {}", expected, found(*value)));
+  if (!number || !key_accepts(key, static_cast<double>(*number))) {
+    fail(key.name, fmt::format("expected {}, found {}", expected, found(*value)));
+  }
   return *number;
 }
 
@@ -162,11 +169,7 @@ std::string TomlTable::choice(const std::string& key, const std::vector<std::str
 
 std::string TomlTable::name(const std::string& key, std::optional<std::string> fallback) {
   const std::string word = text(key, std::move(fallback));
-  const bool plain = std::all_of(word.begin(), word.end(),
-                                 [](unsigned char c) { return c >= 0x20 && c != 0x7f && c != '/' && c != '\\'; });
-  if (has(key) && (word.empty() || !plain || word == "." || word == "..")) {
-    fail(key, "expected a name without slashes and control characters, found \"" + word + "\"");
-  }
+  if (has(key) && !is_name(word)) fail(key, std::string(kNameExpected) + ", found \"" + word + "\"");
   return word;
 }
 

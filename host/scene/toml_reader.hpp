@@ -40,8 +40,7 @@ class TomlTable {
 
   bool has(const std::string& key);
   double number(const std::string& key, const Range& range, std::optional<double> fallback = {});
-  std::uint64_t whole(const std::string& key, std::uint64_t low, std::uint64_t high,
-                      std::optional<std::uint64_t> fallback);
+  std::uint64_t whole(const std::string& key, std::uint64_t low, std::uint64_t high);
   bool boolean(const std::string& key, bool fallback);
   std::string text(const std::string& key, std::optional<std::string> fallback = {});
   /// A text out of `choices`.
@@ -55,6 +54,8 @@ class TomlTable {
   Vec3 direction(const std::string& key, std::optional<Vec3> fallback = {});
   /// A key of a table row (number, or boolean for a switch); nothing if absent.
   std::optional<double> row_key(const TableKey& key);
+  /// A whole number of a table row, exact also beyond 2^53.
+  std::uint64_t row_whole(const TableKey& key);
   /// A file inside the scene's folder that exists, as a path to open.
   std::string file(const std::string& key);
   /// A table below this one, or nothing.
@@ -75,6 +76,8 @@ class TomlTable {
 
   [[noreturn]] void fail(const std::string& key, const std::string& message) const;
   [[noreturn]] void fail_at(const toml::source_region& where, const std::string& message) const;
+  /// Complains that a key is missing, or of a misspelt one that could be it.
+  [[noreturn]] void missing(const std::string& key, const std::string& expected) const;
   std::string key_path(const std::string& key) const { return label_.empty() ? key : label_ + "." + key; }
   const std::string& label() const { return label_; }
   /// Where the table stands, for errors found later.
@@ -82,7 +85,6 @@ class TomlTable {
   const std::string& scene_file() const { return file_; }
 
  private:
-  [[noreturn]] void missing(const std::string& key, const std::string& expected) const;
   [[noreturn]] void unknown(const toml::key& key) const;
   std::string place_of(const toml::source_region& where) const;
 

@@ -215,8 +215,4 @@ void check_scene(const Scene& scene);
 /// What clray understood of a scene, for a person: components, materials, extents, light, detectors.
 std::string describe_scene(const Scene& scene);
 
-/// The rows of a table, each with a line per key: name, default, range, meaning. kind: "brdf", "shape", "detector".
-/// Throws Error(usage) for another kind.
-std::string list_table(const std::string& kind);
-
 }  // namespace clray

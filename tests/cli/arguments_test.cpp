@@ -46,7 +46,8 @@ TEST_CASE("lists of the tables") {
   CHECK(contains(devices.out, "index"));
   const auto wrong = clray(scratch, {"--list", "colours"});
   CHECK(wrong.status == 2);
-  CHECK(contains(wrong.err, "expected devices, brdf, shape or detector"));
+  CHECK(contains(wrong.err,
+                 "expected one of devices, brdf, shape, detector, keys, source, observer, motion, station, trace"));
 }
 
 TEST_CASE("no OpenCL platform: status 4, and the packages to install are named") {
@@ -69,27 +70,29 @@ TEST_CASE("wrong arguments: status 2, the option, the word and what was expected
   };
   const Case cases[] = {
       {{"--rays", "many"}, {"--rays", "'many'", "2^22"}},
-      {{"--rays", "0"}, {"--rays", "at least 1"}},
+      {{"--rays", "0"}, {"--rays", "'0'", "[1..2^40]"}},
       {{"--rays", "1.5"}, {"--rays", "whole number"}},
       {{"--rays", "-5"}, {"--rays", "'-5'"}},
       {{"--rays", "1e99"}, {"--rays"}},
-      {{"--rays", "2^41"}, {"--rays", "at most 2^40"}},
+      {{"--rays", "2^41"}, {"--rays", "[1..2^40]"}},
       {{"--rays", "nan"}, {"--rays"}},
       {{"--rays", ""}, {"--rays", "''"}},
-      {{"--target-error", "0"}, {"--target-error", "above 0"}},
-      {{"--target-error", "101%"}, {"--target-error", "up to 100"}},
+      {{"--target-error", "0"}, {"--target-error", "(0,100]"}},
+      {{"--target-error", "101%"}, {"--target-error", "(0,100]"}},
       {{"--time-limit", "5 weeks"}, {"--time-limit", "500ms"}},
       {{"--source", "0,0,0"}, {"--source", "not all zero"}},
       {{"--source", "1,2"}, {"--source", "X,Y,Z"}},
       {{"--observer", "1,2,3,4"}, {"--observer", "X,Y,Z"}},
       {{"--observer", "1,nan,0"}, {"--observer"}},
       {{"--bins", "0"}, {"--bins"}},
-      {{"--bins", "20000000"}, {"--bins", "10000000"}},
-      {{"--max-bounces", "65"}, {"--max-bounces", "1 to 64"}},
+      {{"--bins", "20000000"}, {"--bins", "[1..1e7]"}},
+      {{"--max-bounces", "65"}, {"--max-bounces", "[1..64]"}},
       {{"--work-group", "4096"}, {"--work-group", "1 to 1024"}},
       {{"--seed", "-1"}, {"--seed"}},
+      {{"--seed", "1e19"}, {"--seed"}},
+      {{"--time-limit", "0s"}, {"--time-limit", "(0,inf)"}},
       {{"--length-unit", "furlong"}, {"--length-unit", "ft"}},
-      {{"--sampler", "halton"}, {"--sampler", "sobol or random"}},
+      {{"--sampler", "halton"}, {"--sampler", "random, sobol"}},
       {{"--ray", "5"}, {"no option --ray", "did you mean --rays?"}},
       {{"other.obj"}, {"one scene at a time"}},
       {{"--out"}, {}},

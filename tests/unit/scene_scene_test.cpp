@@ -374,7 +374,7 @@ TEST_CASE("scene: scenes built by hand are checked") {
   CHECK(check_of(s) == "station.eta_q: expected a number in [0,1], found 1.5");
   s = good;
   s.trace.replicates = 1;
-  CHECK(check_of(s) == "trace.replicates: expected a number in [2,64], found 1");
+  CHECK(check_of(s) == "trace.replicates: expected a whole number in [2..64], found 1");
 }
 
 TEST_CASE("scene: the scenes in meshes/ load, and are described") {
@@ -397,7 +397,7 @@ TEST_CASE("scene: the scenes in meshes/ load, and are described") {
   CHECK(bands_of(rich).size() == 3);
   const std::string text = describe_scene(rich);
   for (const char* part : {"bus ", "paraboloid", "follows the source", "spectrum of 11 points, d 0.3, n 200, f0 = rho",
-                           "2 x 1 x 1.73205 m", "8 bounces", "at the Sun: at the source"}) {
+                           "2 x 1 x 1.73205 m", "max_bounces 8", "name at the Sun, direction source"}) {
     CHECK(text.find(part) != std::string::npos);
   }
 }

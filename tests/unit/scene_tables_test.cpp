@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "clray/error.hpp"
-#include "clray/scene.hpp"
+#include "clray/keys.hpp"
 #include "scene/tables.hpp"
 
 using namespace clray;

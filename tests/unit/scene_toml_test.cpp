@@ -55,7 +55,7 @@ TEST_CASE("toml: words out of a list") {
   CHECK(f.complaint("[[material]]\nname = \"a\"\nmodel = \"lambrt\"\n" + kBall).find("; did you mean 'lambert'?") !=
         std::string::npos);
   CHECK(f.complaint(kBall + "[trace]\nsampler = \"halton\"\n") ==
-        "s.toml:3:11: trace.sampler: expected one of sobol, random, found \"halton\"");
+        "s.toml:3:11: trace.sampler: expected one of random, sobol, found \"halton\"");
   CHECK(f.complaint(kBall + "[observer]\ndirection = \"sun\"\n") ==
         "s.toml:3:13: observer.direction: expected one of source, found \"sun\"");
   CHECK(f.complaint("length_unit = \"km\"\n" + kBall) ==
@@ -65,7 +65,7 @@ TEST_CASE("toml: words out of a list") {
 TEST_CASE("toml: wrong types") {
   const SceneFolder f;
   CHECK(f.complaint(kBall + "[source]\nwavelength_nm = \"green\"\n") ==
-        "s.toml:3:17: source.wavelength_nm: expected a number in (0,10000000], found \"green\"");
+        "s.toml:3:17: source.wavelength_nm: expected a number in (0,1e7], found \"green\"");
   CHECK(f.complaint(kBall + "[source]\ndirection = [0, 1]\n") ==
         "s.toml:3:13: source.direction: expected three numbers [x, y, z], found an array of 2");
   CHECK(f.complaint(kBall + "[source]\ndirection = [0, true, 1]\n") ==
@@ -82,7 +82,7 @@ TEST_CASE("toml: wrong types") {
   CHECK(f.complaint("[[component]]\nshape = \"box\"\nsize = [1, 2, 3]\nsize_x = 1\n") ==
         "s.toml:4:10: component.size_x: given twice, here and in size");
   CHECK(f.complaint(kBall + "[trace]\nrays = 1.5\n") ==
-        "s.toml:3:8: trace.rays: expected a whole number in [1,1099511627776], found 1.5");
+        "s.toml:3:8: trace.rays: expected a whole number in [1..2^40], found 1.5");
   CHECK(f.complaint(kBall + "[[detector]]\nkind = \"delay\"\nbins = 2.5\n") ==
         "s.toml:4:8: detector.bins: expected a whole number in [1..1e7], found 2.5");
 }
@@ -108,7 +108,7 @@ TEST_CASE("toml: numbers out of range or not finite") {
   CHECK(f.complaint(kBall + "[station]\ndivergence_urad = 0\n") ==
         "s.toml:3:19: station.divergence_urad: expected a number in (0,inf), found 0");
   CHECK(f.complaint(kBall + "[trace]\nmax_bounces = 65\n") ==
-        "s.toml:3:15: trace.max_bounces: expected a whole number in [1,64], found 65");
+        "s.toml:3:15: trace.max_bounces: expected a whole number in [1..64], found 65");
   CHECK(f.complaint("length_unit = 0\n" + kBall) == "s.toml:1:15: length_unit: expected a number in (0,inf), found 0");
   CHECK(f.complaint(kBall + "[[detector]]\nkind = \"delay\"\nstart_ns = 3\nstop_ns = 2\n") ==
         "s.toml:2:1: detector.stop_ns: expected more than start_ns = 3, found 2");
@@ -179,9 +179,9 @@ TEST_CASE("toml: files are there and inside the scene's folder") {
 TEST_CASE("toml: keys that exclude or need each other") {
   const SceneFolder f;
   CHECK(f.complaint(kBall + "[source]\nbands = [[400, 500]]\n") ==
-        "s.toml:3:9: source.bands: belongs to kind = \"sun\"; a laser has wavelength_nm");
+        "s.toml:3:9: source.bands: belongs to a sun; this is a laser");
   CHECK(f.complaint(kBall + "[source]\nkind = \"sun\"\nwavelength_nm = 532\n") ==
-        "s.toml:4:17: source.wavelength_nm: belongs to kind = \"laser\"; a sun has bands");
+        "s.toml:4:17: source.wavelength_nm: belongs to a laser; this is a sun");
   CHECK(f.complaint(kBall + "[source]\nkind = \"sun\"\nbands = [[500, 400]]\n") ==
         "s.toml:4:16: source.bands: expected more than 500, found 400");
   CHECK(f.complaint(kBall + "[source]\nkind = \"sun\"\nbands = [[400, 500], [400, 500]]\n") ==
@@ -204,7 +204,7 @@ TEST_CASE("toml: keys that exclude or need each other") {
         "s.toml:2:1: motion: the motion needs between 1 and 10000000 steps");
   f.write("att.csv", "0,1,0,0,0\n10,1,0,0,0\n");
   CHECK(f.complaint(kBall + "[motion]\nattitudes = \"att.csv\"\nperiod_s = 1\n") ==
-        "s.toml:4:12: motion.period_s: belongs to a spin; attitudes come from the table");
+        "s.toml:4:12: motion.period_s: belongs to a spin; this is a table");
   CHECK(f.complaint(kBall + "[motion]\nattitudes = \"att.csv\"\nstop_s = 11\n") ==
         "s.toml:4:10: motion.stop_s: expected a number in [0,10], found 11");
 }
