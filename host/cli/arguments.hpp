@@ -41,7 +41,7 @@ double parse_duration(const std::string& text, const std::string& option);
 double parse_percent(const std::string& text, const std::string& option);
 /// "X,Y,Z", as a unit vector.
 Vec3 parse_direction(const std::string& text, const std::string& option);
-/// "m", "cm", "mm", "in", "ft" or a number of metres.
+/// One of length_units(), or a number of metres.
 double parse_length_unit(const std::string& text, const std::string& option);
 
 }  // namespace clray::cli

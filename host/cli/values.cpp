@@ -6,6 +6,7 @@
 
 #include "arguments.hpp"
 #include "clray/error.hpp"
+#include "clray/keys.hpp"
 
 namespace clray::cli {
 
@@ -102,12 +103,12 @@ Vec3 parse_direction(const std::string& text, const std::string& option) {
 }
 
 double parse_length_unit(const std::string& text, const std::string& option) {
-  if (text == "m") return 1.0;
-  if (text == "cm") return 0.01;
-  if (text == "mm") return 0.001;
-  if (text == "in") return 0.0254;
-  if (text == "ft") return 0.3048;
-  const std::string expected = "m, cm, mm, in, ft or a number of metres";
+  std::string expected;
+  for (const auto& [name, metres] : length_units()) {
+    if (text == name) return metres;
+    expected += name + ", ";
+  }
+  expected += "or a number of metres";
   const double value = number(text, option, expected);
   if (!(value > 0.0)) reject(option, text, expected);
   return value;

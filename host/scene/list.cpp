@@ -86,6 +86,12 @@ std::vector<KeyInfo> scene_keys(const std::string& of) {
   return infos(*row);
 }
 
+const std::vector<std::pair<std::string, double>>& length_units() {
+  static const std::vector<std::pair<std::string, double>> units{
+      {"m", 1.0}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}, {"ft", 0.3048}};
+  return units;
+}
+
 std::string key_fault(const std::string& of, const std::string& name, double value) {
   std::vector<TableKey> numbers;
   for (const KeyRow& row : key_rows(of)) {

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "clray/error.hpp"
+#include "clray/keys.hpp"
 #include "scene/material.hpp"
 #include "scene/scene_parts.hpp"
 #include "scene/tables.hpp"
@@ -41,11 +42,10 @@ double length_unit(TomlTable& root) {
   const toml::node* value = root.node("length_unit");
   if (value == nullptr) return 1.0;
   if (!value->is_string()) return root.number("length_unit", kPositive);
-  const std::string unit = root.choice("length_unit", {"m", "cm", "mm", "in", "ft"});
-  if (unit == "cm") return 0.01;
-  if (unit == "mm") return 0.001;
-  if (unit == "in") return 0.0254;
-  return unit == "ft" ? 0.3048 : 1.0;
+  std::vector<std::string> names;
+  for (const auto& [name, metres] : length_units()) names.push_back(name);
+  const std::string unit = root.choice("length_unit", names);
+  return length_units()[static_cast<std::size_t>(std::find(names.begin(), names.end(), unit) - names.begin())].second;
 }
 
 void read_materials(TomlTable& root, Scene* scene) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace clray {
@@ -26,6 +27,9 @@ std::vector<std::string> table_rows(const std::string& table);
 /// The keys of a section of a scene file ("station") or of a row of a table ("delay"), in their order. Throws
 /// Error(usage) where there is none of this name.
 std::vector<KeyInfo> scene_keys(const std::string& of);
+
+/// Names of units of length and the metres that each has.
+const std::vector<std::pair<std::string, double>>& length_units();
 
 /// What is wrong with a number, or a word, for a key, such as ("trace", "seed", -1): "expected …"; empty if nothing is.
 std::string key_fault(const std::string& of, const std::string& name, double value);

@@ -13,16 +13,16 @@ struct Scene;
 struct Result;
 class Device;
 
-/// When to stop and how to sample. Of rays, target and time whichever comes first; with none of the
-/// three: to 1 % with at least 2^22 rays per orientation.
+/// When to stop and how to sample; `clray --list trace` has the ranges. Of rays, target and time whichever comes first;
+/// with none of the three: to 1 % with at least 2^22 rays per orientation.
 struct TraceOptions {
-  int max_bounces = 1;                  ///< surface interactions, 1 … 64
+  int max_bounces = 1;                  ///< surface interactions
   std::uint64_t rays = 0;               ///< primary rays per orientation, rounded up to 16·2^k; 0: not given
   double target_error_percent = 0.0;    ///< 95 % half-width over the value; 0: not given
   double time_limit_s = 0.0;            ///< of tracing; 0: none
   std::uint64_t max_rays = 1ull << 32;  ///< where a search for a target gives up
   std::uint64_t seed = 1;
-  int replicates = 16;          ///< independent replicates (the error's degrees of freedom + 1), 2 … 64
+  int replicates = 16;          ///< independent replicates (the error's degrees of freedom + 1)
   bool sobol = true;            ///< false: plain random sampling
   bool stratify = true;         ///< with sobol: spread points over silhouette, delays and peaks (docs/sampling.md)
   bool specialise = true;       ///< false: the generic program (same digest, slower)
