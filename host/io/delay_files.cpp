@@ -310,7 +310,7 @@ void map_picture(Writer& writer, const Group& group, const std::string& stem) {
 void write_delay(Writer& writer) {
   for (const auto& group : groups_by_band(writer.result.delay)) {
     const ResultKey& key = group.front()->key;
-    const std::string stem = writer.stem("delay", key) + (key.band.empty() ? "" : "-" + file_name_part(key.band));
+    const std::string stem = writer.stem("delay", key, true);
     delay_table(writer, group, stem);
     if (group.size() > 1) {
       totals_table(writer, group, stem);

@@ -8,6 +8,7 @@
 #include "io/fits_file.hpp"
 #include "io/picture_file.hpp"
 #include "io/writer.hpp"
+#include "text/file_names.hpp"
 #include "text/text.hpp"
 
 namespace clray::io {

@@ -158,26 +158,22 @@ void spectrum_picture(Writer& writer, const Group& group, const std::string& ste
   writer.draw(plot, name);
 }
 
-/// Replaces the kind at the head of a stem: the files are called after what they show.
-std::string renamed(const std::string& stem, const std::string& name) {
-  constexpr std::string_view kKind = "spectrometer";
-  return stem.compare(0, kKind.size(), kKind) == 0 ? name + stem.substr(kKind.size()) : name + "-" + stem;
-}
-
 }  // namespace
 
 void write_spectrometer(Writer& writer) {
-  const bool moving = writer.result.orientations.size() > 1;
   for (const auto& group : groups(writer.result.spectrometer)) {
-    const std::string stem = writer.stem("spectrometer", group.front()->key);
-    spectrum_table(writer, group, renamed(stem, "spectrum"), moving);
+    const ResultKey& key = group.front()->key;
+    const bool moving = group.back()->key.orientation != key.orientation;
+    const std::string spectrum = writer.stem("spectrum", key);
+    spectrum_table(writer, group, spectrum, moving);
     if (!moving) {
-      if (writer.options.plots) spectrum_picture(writer, group, renamed(stem, "spectrum"));
+      if (writer.options.plots) spectrum_picture(writer, group, spectrum);
       continue;
     }
     const auto bands = by_band(group);
-    lightcurve_table(writer, bands, renamed(stem, "lightcurve"));
-    if (writer.options.plots) lightcurve_picture(writer, bands, renamed(stem, "lightcurve"));
+    const std::string lightcurve = writer.stem("lightcurve", key);
+    lightcurve_table(writer, bands, lightcurve);
+    if (writer.options.plots) lightcurve_picture(writer, bands, lightcurve);
   }
 }
 

@@ -146,10 +146,11 @@ void time_picture(Writer& writer, const Group& group, const std::string& stem) {
   writer.draw(plot, name);
 }
 
-/// A grid of Sun directions belongs to one instant; a motion has one direction per orientation.
-bool one_instant(const Group& group) {
+/// A grid of Sun directions belongs to one instant, whatever the body does; a motion has a time per orientation.
+bool one_instant(const Writer& writer, const Group& group) {
+  const double first = time_of(writer.result, group.front()->key);
   return std::all_of(group.begin(), group.end(),
-                     [&](const auto* record) { return record->key.orientation == group.front()->key.orientation; });
+                     [&](const auto* record) { return time_of(writer.result, record->key) == first; });
 }
 
 }  // namespace
@@ -157,13 +158,13 @@ bool one_instant(const Group& group) {
 void write_pressure(Writer& writer) {
   for (const auto& group : groups_by_band(writer.result.pressure)) {
     const ResultKey& key = group.front()->key;
-    const std::string stem = writer.stem("pressure", key) + (key.band.empty() ? "" : "-" + file_name_part(key.band));
+    const std::string stem = writer.stem("pressure", key, true);
     pressure_table(writer, group, stem);
     if (!writer.options.plots || group.size() < 2) continue;
-    if (writer.scene.motion && !one_instant(group)) {
-      time_picture(writer, group, stem);
-    } else {
+    if (one_instant(writer, group)) {
       map_picture(writer, group, stem);
+    } else {
+      time_picture(writer, group, stem);
     }
   }
 }

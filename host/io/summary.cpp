@@ -132,8 +132,8 @@ void add_entries(Json& detectors, const Writer& writer, const Records& records, 
     Json& place = place_of(detectors, group.front()->key);
     std::set<std::size_t> orientations;
     for (const auto* record : group) orientations.insert(record->key.orientation);
-    const bool several = writer.result.orientations.size() > 1 || orientations.size() > 1 ||
-                         (group.size() > 1 && group.front()->key.band == group.back()->key.band);
+    const bool several =
+        orientations.size() > 1 || (group.size() > 1 && group.front()->key.band == group.back()->key.band);
     for (const auto* record : group) {
       Json made = entry(*record);
       if (several) {

@@ -11,8 +11,7 @@
 namespace clray::io {
 
 std::string Writer::add(const std::string& stem, const std::string& extension) {
-  std::string name = stem + "." + extension;
-  for (int i = 2; !taken.insert(name).second; ++i) name = stem + "-" + std::to_string(i) + "." + extension;
+  const std::string name = names.file(stem, extension);
   files.push_back(name);
   return name;
 }
@@ -25,7 +24,7 @@ void Writer::draw(const Plot& plot, const std::string& name) {
   const std::string trouble = plot.draw(folder.folder());
   if (trouble.empty()) return;
   files.pop_back();
-  taken.erase(name);
+  names.release(name);
   warnings.push_back(trouble);
 }
 
@@ -40,13 +39,17 @@ std::string Writer::kind_of(const ResultKey& key) const {
   return key.detector;
 }
 
-std::string Writer::stem(const std::string& kind, const ResultKey& key) const {
+std::string Writer::stem(const std::string& first, const ResultKey& key, bool of_band) {
+  const std::string kind = kind_of(key);
   int of_kind = 0;
   for (const auto& detector : scene.detectors) of_kind += detector.kind == kind;
-  std::string stem = of_kind > 1 ? file_name_part(key.detector) : kind;
-  if (!key.observer.empty()) stem += "-" + file_name_part(key.observer);
-  if (!key.variant.empty()) stem += "-" + file_name_part(key.variant);
-  return stem;
+  std::vector<std::string> parts{of_kind > 1 && first == kind ? key.detector : first};
+  if (of_kind > 1 && first != kind) parts.push_back(key.detector);
+  for (const auto& part : {key.observer, key.variant}) {
+    if (!part.empty()) parts.push_back(part);
+  }
+  if (of_band && !key.band.empty()) parts.push_back(key.band);
+  return names.stem(parts, first);
 }
 
 std::string Writer::title(const std::string& kind, const ResultKey& key) const {
@@ -82,6 +85,7 @@ std::vector<std::string> write_result(const Result& result, const Scene& scene, 
   Reference reference;
   if (!options.reference_file.empty()) reference = load_reference(options.reference_file);
   io::Writer writer{result, scene, options, place, options.reference_file.empty() ? nullptr : &reference, {}, {}, {}};
+  for (const char* own : {"error", "summary"}) writer.names.reserve(own);
   try {
     io::write_delay(writer);
     io::write_spectrometer(writer);

@@ -2,13 +2,13 @@
 // What the writers of one result share, and the writers themselves: one call per kind of file.
 #pragma once
 
-#include <set>
 #include <string>
 #include <vector>
 
 #include "clray/result.hpp"
 #include "io/output_folder.hpp"
 #include "io/table_file.hpp"
+#include "text/file_names.hpp"
 #include "text/gnuplot.hpp"
 
 namespace clray::io {
@@ -23,7 +23,7 @@ struct Writer {
   const OutputFolder& folder;
   const Reference* reference = nullptr;      ///< of --reference, or null
   std::vector<std::string> files, warnings;  ///< what was written; what went wrong without harm
-  std::set<std::string> taken;               ///< names that add() has given out
+  FileNames names;                           ///< those of the folder
 
   /// Registers a file "stem.extension" under a name not yet taken and returns the name.
   std::string add(const std::string& stem, const std::string& extension);
@@ -33,9 +33,10 @@ struct Writer {
   void draw(const Plot& plot, const std::string& name);
 
   std::string scene_name() const;
-  /// Stem of the files of a record: the kind, or the detector's name where there are several of the kind, then
-  /// observer and variant.
-  std::string stem(const std::string& kind, const ResultKey& key) const;
+  /// Stem of a record's files, which are called `first` (the detector's kind, or what they show: "spectrum"). Where there
+  /// are several detectors of the kind their names stand instead of it, or beside what is shown; then follow observer
+  /// and variant, and the band, for files of one band.
+  std::string stem(const std::string& first, const ResultKey& key, bool of_band = false);
   /// Words for titles: scene, detector if named, observer, variant.
   std::string title(const std::string& kind, const ResultKey& key) const;
   /// Kind of the detector named in a key.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "clray/error.hpp"
 #include "shared/photon.h"
@@ -11,6 +12,7 @@
 #include "slr/link.hpp"
 #include "slr/scatter_plot.hpp"
 #include "slr/session.hpp"
+#include "text/file_names.hpp"
 
 namespace clray::slr {
 
@@ -23,13 +25,6 @@ std::string word(const std::string& name, std::size_t most = 10) {
   std::string text;
   for (const char c : name) text += c > ' ' && c < 127 ? c : '_';
   return text.empty() ? "na" : text.substr(0, most);
-}
-
-/// Part of a file name.
-std::string file_part(const std::string& name) {
-  std::string text;
-  for (const char c : name) text += std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '.' ? c : '-';
-  return text;
 }
 
 Epoch after(const Epoch& zero, std::int64_t ps) {
@@ -177,6 +172,32 @@ std::string session_json(const Session& session, const SessionSummary& summary, 
       link);
 }
 
+/// One key for each session: the groups of delay results seen from the source.
+std::vector<ResultKey> session_keys(const Result& result, const Scene& scene) {
+  std::vector<ResultKey> keys;
+  for (const DelayResult& d : result.delay) {
+    const bool known = std::any_of(keys.begin(), keys.end(), [&](const ResultKey& k) {
+      return k.detector == d.key.detector && k.observer == d.key.observer && k.variant == d.key.variant;
+    });
+    const bool seen =
+        scene.observers.empty() || std::any_of(scene.observers.begin(), scene.observers.end(), [&](const Observer& o) {
+          return o.monostatic && (d.key.observer.empty() || o.name == d.key.observer);
+        });
+    if (!known && seen) keys.push_back(d.key);
+  }
+  return keys;
+}
+
+/// Those of a session's detector, observer and variant in which sessions differ.
+std::vector<std::string> own_names(const std::vector<ResultKey>& keys, const ResultKey& key) {
+  std::vector<std::string> names;
+  for (const auto name : {&ResultKey::detector, &ResultKey::observer, &ResultKey::variant}) {
+    const bool differs = std::any_of(keys.begin(), keys.end(), [&](const ResultKey& k) { return k.*name != key.*name; });
+    if (differs && !(key.*name).empty()) names.push_back(key.*name);
+  }
+  return names;
+}
+
 }  // namespace
 
 }  // namespace clray::slr
@@ -199,38 +220,29 @@ MoreFiles session_files(const Result& result, const Scene& scene, const std::str
                         const SessionOptions& options) {
   MoreFiles files;
   if (!has_session(scene) || result.delay.empty()) return files;
-  std::vector<ResultKey> keys;
-  for (const DelayResult& d : result.delay) {
-    const bool known = std::any_of(keys.begin(), keys.end(), [&](const ResultKey& k) {
-      return k.detector == d.key.detector && k.observer == d.key.observer && k.variant == d.key.variant;
-    });
-    const bool seen =
-        scene.observers.empty() || std::any_of(scene.observers.begin(), scene.observers.end(), [&](const Observer& o) {
-          return o.monostatic && (d.key.observer.empty() || o.name == d.key.observer);
-        });
-    if (!known && seen) keys.push_back(d.key);
+  const std::vector<ResultKey> keys = slr::session_keys(result, scene);
+  text::FileNames names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder.empty() ? "." : folder)) {
+    names.reserve(entry.path().stem().string());
   }
   for (const ResultKey& key : keys) {
     SessionOptions one = options;
     one.detector = key.detector;
     one.observer = key.observer;
     one.variant = key.variant;
-    std::string name;
-    for (const auto& [part, several] :
-         {std::pair{key.detector, key.detector != keys.front().detector || key.detector != keys.back().detector},
-          std::pair{key.observer, key.observer != keys.front().observer || key.observer != keys.back().observer},
-          std::pair{key.variant, keys.size() > 1}}) {
-      if (several && !part.empty()) name += (name.empty() ? "" : "-") + part;
-    }
-    if (!name.empty()) one.stem += "-" + slr::file_part(name);
+    const std::vector<std::string> own = slr::own_names(keys, key);
+    std::vector<std::string> parts{options.stem};
+    parts.insert(parts.end(), own.begin(), own.end());
+    one.stem = names.stem(parts);
     slr::Session session(result, scene, one);
     const SessionSummary summary = slr::write_files(session, result, scene, folder, one);
     for (const char* end : {".csv", ".crd", ".png"}) {
       if (options.plots || std::string(end) != ".png") files.names.push_back(one.stem + end);
     }
     const std::string entry = slr::session_json(session, summary, scene);
-    files.summary_json +=
-        keys.size() == 1 ? entry : (files.summary_json.empty() ? "{" : ", ") + slr::json_text(name) + ": " + entry;
+    files.summary_json += keys.size() == 1 ? entry
+                                           : (files.summary_json.empty() ? "{" : ", ") +
+                                                 slr::json_text(fmt::format("{}", fmt::join(own, "/"))) + ": " + entry;
   }
   if (keys.size() > 1) files.summary_json += "}";
   files.summary_key = "session";

@@ -71,24 +71,16 @@ std::string one_line(std::string_view text) {
   return line;
 }
 
-std::string file_name_part(std::string_view text) {
-  constexpr std::size_t kLongest = 80;
-  const std::string clean = one_line(text);
-  std::string part;
-  for (std::size_t i = 0; i < clean.size();) {
-    const std::size_t length = utf8_length(clean, i);
-    if (part.size() + length > kLongest) break;
-    const char c = clean[i];
-    const bool keep = length > 1 || (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
-                      c == '_' || c == '-' || (c == '.' && !part.empty());
-    if (keep) {
-      part.append(clean, i, length);
-    } else {
-      part += '_';
-    }
-    i += length;
+std::size_t decode_utf8(std::string_view text, std::size_t i, std::uint32_t* character) {
+  const std::size_t length = utf8_length(text, i);
+  const auto byte = [&](std::size_t k) { return static_cast<std::uint32_t>(static_cast<unsigned char>(text[k])); };
+  if (length <= 1) {
+    *character = byte(i);
+    return 1;
   }
-  return part.empty() ? "unnamed" : part;
+  *character = byte(i) & (0xffu >> (length + 1));
+  for (std::size_t k = 1; k < length; ++k) *character = *character << 6 | (byte(i + k) & 0x3f);
+  return length;
 }
 
 std::string ascii(std::string_view text) {

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers and names as text in result files: shortest digits that read back to the same double, whatever the
-// locale, and file names made of what users call their things.
+// Numbers and words as text in result files: shortest digits that read back to the same double, whatever the locale,
+// and texts of users made fit for one line, for FITS headers, for UTF-8.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -17,9 +19,8 @@ std::string rounded(double value, int digits);
 /// Control characters become spaces, bytes that are not UTF-8 become '?'.
 std::string one_line(std::string_view text);
 
-/// Part of a file name: letters, digits, '.', '_', '-' and UTF-8 are kept, the rest becomes '_'; at most 80 bytes,
-/// never empty, no leading dot.
-std::string file_name_part(std::string_view text);
+/// The UTF-8 character that starts at byte `i`, and its length in bytes; a byte that starts none stands for itself.
+std::size_t decode_utf8(std::string_view text, std::size_t i, std::uint32_t* character);
 
 /// Only printable ASCII, as FITS headers demand; the rest becomes '?'.
 std::string ascii(std::string_view text);

@@ -3,9 +3,12 @@
 // whatever the locale; references; names that users may choose.
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <array>
 #include <clocale>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 
 #include "clray/error.hpp"
@@ -146,6 +149,66 @@ TEST_CASE("several orientations and observers: rows carry their orientation, fil
   CHECK(read_table(scratch / "out/delay-east-totals.csv").rows.size() == 3);
   const auto summary = nlohmann::json::parse(slurp(scratch / "out/summary.json"));
   CHECK(summary["detectors"]["delay"]["we/st"]["orientations"].size() == 3);
+}
+
+TEST_CASE("like names of variants, observers and bands: as many files as records, each with its own numbers") {
+  Scratch scratch;
+  Result result = io_test::result();
+  const std::vector<std::array<std::string, 3>> keys = {{"", "a b", ""},
+                                                        {"", "a-b", ""},
+                                                        {"", "A B", ""},
+                                                        {"a", "b", ""},
+                                                        {"a-b", "c", ""},
+                                                        {"a", "b-c", ""},
+                                                        {"", "a", "b"},
+                                                        {std::string(200, 'o'), std::string(200, 'v'), std::string(200, 'b')},
+                                                        {"", "x-totals", ""},
+                                                        {"", "x", ""}};
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    for (std::size_t orientation : {0u, 1u}) {
+      result.delay.push_back(delay(4, orientation));
+      ResultKey& key = result.delay.back().key;
+      key.observer = keys[i][0];
+      key.variant = keys[i][1];
+      key.band = keys[i][2];
+      result.delay.back().intensity_m2_per_sr.value = static_cast<double>(i + 1);
+    }
+  }
+  const auto files = write_result(result, io_test::scene(), scratch / "out", no_plots());
+  std::set<double> found;
+  std::size_t totals = 0;
+  for (const std::string& file : files) {
+    CHECK(file.size() < 255);
+    if (file.find("totals") == std::string::npos || file.find(".csv") == std::string::npos) continue;
+    const Table table = read_table(scratch / ("out/" + file));
+    if (std::find(table.columns.begin(), table.columns.end(), "cross_section_m2") == table.columns.end()) continue;
+    ++totals;
+    found.insert(parse(table.rows[0][2]));
+  }
+  CHECK(totals == keys.size());
+  CHECK(found.size() == keys.size());
+}
+
+TEST_CASE("a grid of pressure directions does not change how other records stand") {
+  Scratch scratch;
+  Result result = io_test::result();
+  result.orientations.assign(5, {});
+  result.delay.push_back(delay(4));
+  result.spectrometer.emplace_back();
+  result.spectrometer.back().key.detector = "spectrometer";
+  result.spectrometer.back().key.band = "400-700";
+  for (std::size_t i = 1; i < 5; ++i) {
+    result.pressure.emplace_back();
+    result.pressure.back().key.detector = "pressure";
+    result.pressure.back().key.orientation = i;
+  }
+  const auto files = write_result(result, io_test::scene(), scratch / "out", no_plots());
+  CHECK(std::count(files.begin(), files.end(), "lightcurve.csv") == 0);
+  CHECK(read_table(scratch / "out/delay.csv").columns[0] == "delay_ns");
+  CHECK(read_table(scratch / "out/spectrum.csv").columns[0] == "band");
+  const auto summary = nlohmann::json::parse(slurp(scratch / "out/summary.json"));
+  CHECK(summary["detectors"]["delay"].contains("intensity_m2_per_sr"));
+  CHECK(summary["detectors"]["pressure"]["orientations"].size() == 4);
 }
 
 TEST_CASE("summary.json: what it says is what was found; NaN is null") {

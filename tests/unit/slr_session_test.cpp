@@ -279,13 +279,37 @@ TEST_CASE("one session for each variant, with the link budget in the summary") {
     pass.result.delay.push_back(d);
   }
   const auto two = session_files(pass.result, pass.scene, folder.path.string(), without_picture());
-  CHECK(two.names == std::vector<std::string>{"observations.csv", "observations.crd", "observations-dull-dark.csv",
-                                              "observations-dull-dark.crd"});
+  CHECK(two.names == std::vector<std::string>{"observations-2.csv", "observations-2.crd", "observations-dull_dark.csv",
+                                              "observations-dull_dark.crd"});
   CHECK(two.summary_json.find("\"dull/dark\": {\"shots\": 4000") != std::string::npos);
   Scene still = pass.scene;
   still.motion.reset();
   CHECK_FALSE(has_session(still));
   CHECK(session_files(pass.result, still, folder.path.string()).names.empty());
+}
+
+TEST_CASE("sessions whose variants have like or long names have files of their own") {
+  const Folder folder;
+  Pass pass(1.0, 1);
+  const DelayResult delay = pass.result.delay.front();
+  pass.result.delay.clear();
+  // The light of each is a share of the noise-free gate's: the files must not hold one another's photons.
+  const std::vector<std::string> variants = {"a b", "a-b", "A B", "тёмный", "чёрный", std::string(300, 'x'),
+                                             std::string(299, 'x') + "y"};
+  pass.scene.station->noise_per_ns = 0.0;
+  for (std::size_t i = 0; i < variants.size(); ++i) {
+    pass.result.delay.push_back(delay);
+    pass.result.delay.back().key.variant = variants[i];
+    for (double& bin : pass.result.delay.back().bin_m2_per_sr) bin *= i % 2 == 0 ? 1e3 : 0.0;
+  }
+  const MoreFiles files = session_files(pass.result, pass.scene, folder.path.string(), without_picture());
+  REQUIRE(files.names.size() == 2 * variants.size());
+  for (std::size_t i = 0; i < variants.size(); ++i) {
+    CAPTURE(files.names[2 * i]);
+    const std::string csv = folder.text(files.names[2 * i]);
+    CHECK(std::count(csv.begin(), csv.end(), '\n') == (i % 2 == 0 ? 2000 + 4 : 4));
+    CHECK(read_crd((folder.path / files.names[2 * i + 1]).string(), {}).ranges == (i % 2 == 0 ? 2000 : 0));
+  }
 }
 
 TEST_CASE("scenes that make no session are refused") {

@@ -35,15 +35,6 @@ TEST_CASE("numbers do not follow the locale, and every double survives") {
   std::setlocale(LC_ALL, "C");
 }
 
-TEST_CASE("file names from users' names: no separators, no leading dot, never empty") {
-  CHECK(file_name_part("../../etc") == "_._.._etc");
-  CHECK(file_name_part("a b\n'\"") == "a_b___");
-  CHECK(file_name_part("Ünïcode") == "Ünïcode");
-  CHECK(file_name_part("") == "unnamed");
-  CHECK(file_name_part(".hidden") == "_hidden");
-  CHECK(file_name_part(std::string(500, 'x')).size() == 80);
-}
-
 TEST_CASE("a user's text reaches gnuplot as it is, on one line") {
   CHECK(gnuplot_text("it's a\n`name`_1") == "'it''s a `name`_1' noenhanced");
 }
