@@ -8,6 +8,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdio>
+#include <memory>
 #include <new>
 #include <set>
 
@@ -23,8 +24,6 @@
 namespace {
 
 using namespace clray;
-constexpr double kPi = 3.14159265358979323846;
-
 using Clock = std::chrono::steady_clock;
 
 std::atomic<bool> stop_asked{false};
@@ -93,23 +92,24 @@ std::string output_folder(const cli::Arguments& arguments, const Scene& scene) {
   return "clray-out/" + (scene.name.empty() ? std::string("scene") : scene.name);
 }
 
-/// A station turns the pulse into photons; with a motion it also makes a session. Returns the link budget to print.
-std::string range_with_station(const Scene& scene, Device& device, Result& result, WriteOptions& options) {
-  if (!scene.station || scene.source.kind != Source::Kind::laser || result.delay.empty()) return {};
-  const double range_m = session_range_m(scene), wavelength_nm = scene.source.wavelength_nm;
-  for (DelayResult& delay : result.delay)
-    delay.photons_per_ns = photons_per_ns(delay, *scene.station, range_m, wavelength_nm);
-  if (has_session(scene)) {
-    options.more.push_back([&](const std::string& folder) {
-      SessionOptions session;
-      session.plots = options.plots;
-      session.device = &device;
-      session.warnings = options.warnings;
-      return session_files(result, scene, folder, session);
-    });
-  }
-  const double cross_section_m2 = 4.0 * kPi * result.delay.front().intensity_m2_per_sr.value;
-  return link_budget_table(*scene.station, wavelength_nm, cross_section_m2, range_m);
+/// A station turns the pulse into photons; with a motion it also makes a session, when the files are written. Returns
+/// a text that then holds what a person is told of it.
+std::shared_ptr<std::string> range_with_station(const Scene& scene, Device& device, Result& result,
+                                                WriteOptions& options) {
+  auto told = std::make_shared<std::string>();
+  expect_photons(scene, &result);
+  *told = link_budget_text(scene, result);
+  if (!has_session(scene) || result.delay.empty()) return told;
+  options.more.push_back([&, told](const std::string& folder) {
+    SessionOptions session;
+    session.plots = options.plots;
+    session.device = &device;
+    session.warnings = options.warnings;
+    MoreFiles files = session_files(result, scene, folder, session);
+    *told = files.text;
+    return files;
+  });
+  return told;
 }
 
 int trace_and_write(const cli::Arguments& arguments, const Scene& scene, Warnings& warnings, Clock::time_point start,
@@ -142,7 +142,7 @@ int trace_and_write(const cli::Arguments& arguments, const Scene& scene, Warning
   options.reference_file = arguments.reference;
   std::vector<std::string> troubles;
   options.warnings = &troubles;
-  const std::string budget = range_with_station(scene, device, result, options);
+  const std::shared_ptr<std::string> ranging = range_with_station(scene, device, result, options);
   const auto files = write_result(result, scene, folder, options);
   warnings.show(troubles);
   if (arguments.explain) print(cli::explanation(result));
@@ -150,7 +150,7 @@ int trace_and_write(const cli::Arguments& arguments, const Scene& scene, Warning
     print("device: " + cli::device_line(result.device) + "\n" + cli::totals_line(result));
   } else {
     print(cli::closing_table(result, scene, folder, files, arguments.reference.empty() ? nullptr : &reference));
-    if (!budget.empty()) print("\n" + budget);
+    if (!ranging->empty()) print("\n" + *ranging);
   }
   if (stop_signal) std::fputs("clray: interrupted: the result holds what was finished and is marked partial\n", stderr);
   return stop_signal ? 128 + stop_signal : 0;

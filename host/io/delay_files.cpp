@@ -168,7 +168,7 @@ void depth_axis(Plot& plot, double per_second, double start, double end) {
 
 bool monostatic(const Writer& writer, const ResultKey& key) {
   for (const auto& observer : writer.scene.observers) {
-    if (key.observer.empty() || observer.name == key.observer) return observer.monostatic;
+    if (key.observer.empty() || observer.name == key.observer) return at_source(observer, writer.scene.source);
   }
   return false;
 }

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "clray/error.hpp"
 #include "io/writer.hpp"
 #include "text/text.hpp"
 
@@ -293,7 +294,10 @@ void write_summary(Writer& writer, const std::vector<MoreFiles>& more) {
   summary["detectors"] = detectors_of(writer);
   summary["totals"] = totals_of(writer);
   for (const auto& part : more) {
-    if (!part.summary_key.empty()) summary[part.summary_key] = Json::parse(part.summary_json, nullptr, false);
+    if (part.summary_key.empty()) continue;
+    Json entry = Json::parse(part.summary_json, nullptr, false);
+    if (entry.is_discarded()) throw Error(ErrorCode::bug, "is not JSON: " + part.summary_json, part.summary_key);
+    summary[part.summary_key] = std::move(entry);
   }
   summary["orientations"] = orientations_of(writer);
   const std::string name = writer.add("summary", "json");

@@ -33,9 +33,9 @@ struct Writer {
   void draw(const Plot& plot, const std::string& name);
 
   std::string scene_name() const;
-  /// Stem of a record's files, which are called `first` (the detector's kind, or what they show: "spectrum"). Where there
-  /// are several detectors of the kind their names stand instead of it, or beside what is shown; then follow observer
-  /// and variant, and the band, for files of one band.
+  /// Stem of a record's files, which are called `first` (the detector's kind, or what they show: "spectrum"). Where
+  /// there are several detectors of the kind their names stand instead of it, or beside what is shown; then follow
+  /// observer and variant, and the band, for files of one band.
   std::string stem(const std::string& first, const ResultKey& key, bool of_band = false);
   /// Words for titles: scene, detector if named, observer, variant.
   std::string title(const std::string& kind, const ResultKey& key) const;

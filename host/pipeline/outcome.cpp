@@ -7,7 +7,9 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <optional>
 
+#include "ephemeris/range.hpp"
 #include "pipeline/estimate.hpp"
 #include "pipeline/sum_reader.hpp"
 #include "scene/spectrum.hpp"
@@ -84,25 +86,12 @@ double magnitude_of(double W_m2, const Band& band) {
   return zero > 0.0 && W_m2 > 0.0 ? -2.5 * el_log(W_m2 / zero) / el_log(10.0) : kNan;
 }
 
-/// Distance of an observer: its own, else the station's at that time; 0 where unknown (a prediction is left to the
-/// laser-ranging session).
-double range_m(const Scene& scene, std::size_t observer, double time_s) {
-  if (scene.observers[observer].range_m > 0.0) return scene.observers[observer].range_m;
-  if (!scene.station || !scene.station->cpf_file.empty()) return 0.0;
-  const auto& table = scene.station->ranges;
-  if (table.empty()) return scene.station->range_m;
-  if (time_s < table.front().first || time_s > table.back().first) return 0.0;
-  if (time_s == table.front().first) return table.front().second;
-  std::size_t i = 1;
-  while (table[i].first < time_s) ++i;
-  const double share = (time_s - table[i - 1].first) / (table[i].first - table[i - 1].first);
-  return (1.0 - share) * table[i - 1].second + share * table[i].second;
-}
-
 class Writer {
  public:
   Writer(const Scene& scene, const PassPlan& plan, const PassOutcome& outcome, Result* out)
-      : scene_(scene), plan_(plan), outcome_(outcome), read_(plan, outcome.sums), out_(*out) {}
+      : scene_(scene), plan_(plan), outcome_(outcome), read_(plan, outcome.sums), out_(*out) {
+    if (scene.station) ranges_.emplace(*scene.station);
+  }
 
   void write() {
     const std::size_t end = plan_.first_orientation + plan_.orientations.size();
@@ -171,7 +160,9 @@ class Writer {
       s.intensity_m2_per_sr = intensity(v, l, c);
       s.source_W_m2 = source_band_W_m2(scene_.source, s.band);
       s.magnitude_AB = s.magnitude_standard_error = kNan;
-      if (const double range = range_m(scene_, c, plan_.orientations[v].time_s); range > 0.0) {
+      const ephemeris::Instant time = ephemeris::instant_of(plan_.orientations[v].time_s);
+      const double range = ephemeris::observer_range_m(scene_.observers[c], ranges_ ? &*ranges_ : nullptr, time);
+      if (range > 0.0) {
         const double factor = s.source_W_m2 / (range * range);
         s.received_W_m2 = factor * s.intensity_m2_per_sr.value;
         s.received_W_m2_standard_error = factor * s.intensity_m2_per_sr.standard_error;
@@ -306,6 +297,7 @@ class Writer {
   const PassPlan& plan_;
   const PassOutcome& outcome_;
   SumReader read_;
+  std::optional<ephemeris::RangeModel> ranges_;
   Result& out_;
 };
 

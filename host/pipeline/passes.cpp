@@ -41,7 +41,7 @@ std::vector<Orientation> sun_grid(const Scene& scene, int azimuths, int elevatio
       Orientation orientation = start;
       orientation.source = direction_from_degrees(360.0 * a / azimuths, elevation);
       for (std::size_t o = 0; o < scene.observers.size(); ++o) {
-        if (scene.observers[o].monostatic) orientation.observers[o] = orientation.source;
+        if (at_source(scene.observers[o], scene.source)) orientation.observers[o] = orientation.source;
       }
       grid.push_back(orientation);
     }

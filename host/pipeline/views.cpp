@@ -199,7 +199,8 @@ void build_views(const Scene& scene, const Geometry& geometry, PassPlan* plan) {
     set_frame(geometry.parts[0].frame, &view);
     if (instanced) place_parts(geometry, motions, plan, &view);
     if (plan->pixels) {
-      const bool monostatic = scene.observers[plan->pixel_observer].monostatic && !scene.trace.force_bistatic;
+      const bool monostatic =
+          at_source(scene.observers[plan->pixel_observer], scene.source) && !scene.trace.force_bistatic;
       add_connection(orientation.source, 0.0, !monostatic, plan);
       picture_axes(orientation, toward, plan);
     } else {

@@ -9,6 +9,7 @@
 #include "clray/scene.hpp"
 #include "scene/keys.hpp"
 #include "scene/motion.hpp"
+#include "scene/scene_parts.hpp"
 #include "scene/tables.hpp"
 #include "shared/portable.h"
 #include "text/columns.hpp"
@@ -143,7 +144,11 @@ std::string describe_scene(const Scene& scene) {
   lines.add({"source", key_text(scene.source)});
   for (const Observer& o : scene.observers) lines.add({"observer", key_text(o)});
   if (scene.motion) lines.add({"motion", motion_text(*scene.motion)});
-  if (scene.station) lines.add({"station", key_text(*scene.station)});
+  if (scene.station) {
+    lines.add({"station", key_text(*scene.station)});
+    const std::string ranges = ranging_text(scene);
+    if (!ranges.empty()) lines.add({"ranges", ranges});
+  }
   for (const DetectorSpec& d : scene.detectors) {
     const TableRow& row = table_row("detector", d.kind);
     const std::string options = row_text(row, d.parameters);

@@ -194,7 +194,7 @@ void check_attitudes(const std::string& where, const Motion& m) {
   for (std::size_t i = 0; i < m.attitudes.size(); ++i) {
     const Quaternion& q = m.attitudes[i].body_to_space;
     const double square = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
-    check_number(path + ".time_s", m.attitudes[i].time_s, kAny);
+    check_number(path + ".time_s", m.attitudes[i].time_s, kTime);
     if (i > 0 && !(m.attitudes[i].time_s > m.attitudes[i - 1].time_s)) {
       throw Error(ErrorCode::input, "times must increase", path);
     }
@@ -242,7 +242,7 @@ void read_ranges(TomlTable& t, const std::string& key, Station* s) {
 }
 
 void check_ranges(const std::string& where, const Station& s) {
-  check_pairs(where + ".ranges", s.ranges, kPositive);
+  check_pairs(where + ".ranges", s.ranges, {1e-3, 1e13, true, true});
 }
 
 std::string ranges_text(const Station& s) {
@@ -263,15 +263,21 @@ std::string cpf_text(const Station& s) {
   return s.cpf_file;
 }
 
+constexpr double kMostPower = 1e100;  // relative; moments of a pulse are sums of products
+
+std::string pulse_fault(const Station& s) {
+  const bool some = std::any_of(s.pulse.begin(), s.pulse.end(), [](const auto& row) { return row.second > 0.0; });
+  return s.pulse.empty() || (s.pulse.size() > 1 && some) ? "" : "expected at least two rows and some power";
+}
+
 void read_pulse(TomlTable& t, const std::string& key, Station* s) {
-  s->pulse = read_pairs(t.file(key), {"time_ps", "power"}, 1e12, 0.0, 1e300);
-  double sum = 0.0;
-  for (const auto& [time, power] : s->pulse) sum += power;
-  if (s->pulse.size() < 2 || !(sum > 0.0)) t.fail(key, "expected at least two rows and some power");
+  s->pulse = read_pairs(t.file(key), {"time_ps", "power"}, 1e12, 0.0, kMostPower);
+  if (const std::string fault = pulse_fault(*s); !fault.empty()) t.fail(key, fault);
 }
 
 void check_pulse(const std::string& where, const Station& s) {
-  check_pairs(where + ".pulse", s.pulse, kNotNegative);
+  check_pairs(where + ".pulse", s.pulse, {0.0, kMostPower, true, true});
+  if (const std::string fault = pulse_fault(s); !fault.empty()) throw Error(ErrorCode::input, fault, where + ".pulse");
 }
 
 std::string pulse_text(const Station& s) {

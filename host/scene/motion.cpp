@@ -124,7 +124,8 @@ template <typename ToBody>
 void place(const Scene& scene, const ToBody& body, Orientation* orientation) {
   orientation->source = body(scene.source.direction);
   for (const Observer& observer : scene.observers) {
-    orientation->observers.push_back(observer.monostatic ? orientation->source : body(observer.direction));
+    orientation->observers.push_back(at_source(observer, scene.source) ? orientation->source
+                                                                       : body(observer.direction));
   }
 }
 
@@ -157,9 +158,7 @@ std::vector<Orientation> spin_orientations(const Scene& scene) {
 
 std::vector<Orientation> table_orientations(const Scene& scene) {
   const Motion& motion = *scene.motion;
-  const bool everything = motion.start_s == 0.0 && motion.stop_s == 0.0;
-  const double start = everything ? motion.attitudes.front().time_s : motion.start_s;
-  const double stop = everything ? motion.attitudes.back().time_s : motion.stop_s;
+  const auto [start, stop] = motion_span(motion);
   std::vector<double> times{start};
   for (const Attitude& a : motion.attitudes) {
     if (a.time_s > start && a.time_s <= stop) times.push_back(a.time_s);
@@ -178,12 +177,17 @@ std::vector<Orientation> table_orientations(const Scene& scene) {
 
 }  // namespace
 
+std::pair<double, double> motion_span(const Motion& motion) {
+  const bool everything = !motion.attitudes.empty() && motion.start_s == 0.0 && motion.stop_s == 0.0;
+  if (!everything) return {motion.start_s, motion.stop_s};
+  return {motion.attitudes.front().time_s, motion.attitudes.back().time_s};
+}
+
 std::size_t orientation_count(const Motion& motion) {
   if (!motion.attitudes.empty()) {
-    const bool everything = motion.start_s == 0.0 && motion.stop_s == 0.0;
-    if (everything) return motion.attitudes.size();
+    const auto [start, stop] = motion_span(motion);
     std::size_t count = 1;
-    for (const Attitude& a : motion.attitudes) count += a.time_s > motion.start_s && a.time_s <= motion.stop_s;
+    for (const Attitude& a : motion.attitudes) count += a.time_s > start && a.time_s <= stop;
     return count;
   }
   const double steps = (motion.stop_s - motion.start_s) / motion.period_s / (motion.step_rad / kTwoPi);

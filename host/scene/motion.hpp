@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "clray/result.hpp"
@@ -11,6 +12,9 @@ namespace clray {
 
 /// Where a motion has too many steps to hold.
 constexpr double kMaxOrientations = 1e7;
+
+/// First and last time of a motion, s: start_s and stop_s, or the ends of a table of which both are 0.
+std::pair<double, double> motion_span(const Motion& motion);
 
 /// Steps of a motion: spin has one at start_s and one after each full step up to and including stop_s; a table one at
 /// start_s and one per entry after it up to stop_s (all entries where both are 0). Throws Error(input) if too many.

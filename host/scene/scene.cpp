@@ -143,6 +143,8 @@ Scene load_scene(const std::string& path, const SceneOptions& options) {
   apply_options(options, &scene);
   if (mesh) light_for_pictures(options, &scene);
   check_scene(scene);
+  const std::vector<std::string> more = ranging_warnings(scene);
+  scene.warnings.insert(scene.warnings.end(), more.begin(), more.end());
   return scene;
 }
 

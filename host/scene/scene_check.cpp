@@ -216,6 +216,7 @@ void check_scene(const Scene& scene) {
   }
   if (scene.motion) check_motion(*scene.motion);
   if (scene.station) check_keys("station", *scene.station);
+  check_ranging(scene);
   check_trace(scene.trace);
 }
 

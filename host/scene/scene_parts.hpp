@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "clray/scene.hpp"
 #include "scene/toml_reader.hpp"
@@ -30,5 +31,16 @@ std::string detector_fault(const DetectorSpec& detector);
 
 /// What is wrong with a source (bands that it has no light in), or "".
 std::string source_fault(const Source& source);
+
+/// Throws Error(input) where the station's range is not known throughout the motion (at time 0 without one), where an
+/// observer at the source has another range than the station there, or where the shots of a session are too many.
+void check_ranging(const Scene& scene);
+
+/// What a person should know of the station before the scene is traced: why there will be no session, a target below
+/// the horizon, a calendar that nobody gave. Of a scene that check_ranging() accepts.
+std::vector<std::string> ranging_warnings(const Scene& scene);
+
+/// The station's ranges during the motion, for a person; empty where they are fixed.
+std::string ranging_text(const Scene& scene);
 
 }  // namespace clray

@@ -51,6 +51,13 @@ void read_station(TomlTable& root, Scene* scene) {
   Station s;
   read_keys(*t, &s);
   scene->station = std::move(s);
+  try {
+    check_ranging(*scene);
+  } catch (const Error& e) {
+    const std::string own = t->key_path("");
+    if (e.context().rfind(own, 0) != 0) throw;
+    t->fail(e.context().substr(own.size()), e.message());
+  }
 }
 
 void read_detectors(TomlTable& root, Scene* scene) {

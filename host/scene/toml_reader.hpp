@@ -30,6 +30,8 @@ constexpr Range kAny{-kInfinity, kInfinity, false, false};
 constexpr Range kPositive{0.0, kInfinity, false, false};
 constexpr Range kNotNegative{0.0, kInfinity, true, false};
 constexpr Range kShare{0.0, 1.0, true, true};
+/// Times of tables, s: room for Unix, GPS and Julian seconds (the keys' own are in keys.def).
+constexpr Range kTime{-1e12, 1e12, true, true};
 
 using text::did_you_mean;
 

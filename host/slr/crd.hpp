@@ -9,10 +9,12 @@
 #include <string>
 #include <vector>
 
-#include "slr/epoch.hpp"
+#include "ephemeris/epoch.hpp"
 #include "slr/text_file.hpp"
 
 namespace clray::slr {
+
+using namespace ephemeris;
 
 /// What stands before the ranges. Texts hold no blanks; numbers are NaN where unknown.
 struct CrdHeader {

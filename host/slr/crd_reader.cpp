@@ -3,8 +3,8 @@
 // station may hold and that we do not use are accepted by their type and number of fields.
 #include <fmt/format.h>
 
+#include "ephemeris/record_text.hpp"
 #include "slr/crd.hpp"
-#include "slr/record_text.hpp"
 
 namespace clray::slr {
 

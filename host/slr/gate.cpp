@@ -2,13 +2,10 @@
 // Gate table and host sampling; see gate.hpp.
 #include "slr/gate.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <thread>
 
-#include "clray/error.hpp"
 #include "shared/photon.h"
 
 namespace clray::slr {
@@ -32,14 +29,6 @@ void sample_range(const Gate& gate, const std::vector<double>& brightness, const
 }  // namespace
 
 Gate make_gate(const Histogram& photons, double gate_s) {
-  if (!(gate_s >= photons.width_s)) {
-    throw Error(
-        ErrorCode::input,
-        fmt::format("is {:.6g} ns, shorter than a bin of the delay histogram ({:.6g} ns); expected a longer gate "
-                    "or narrower bins",
-                    gate_s * 1e9, photons.width_s * 1e9),
-        "station.gate_ns");
-  }
   Gate gate;
   gate.opens_s = -0.5 * gate_s;
   const double length_ns = gate_s * 1e9, width_ns = photons.width_s * 1e9;

@@ -20,7 +20,6 @@ struct Gate {
 };
 
 /// The gate, centred on delay zero, over a histogram of signal photons; bins are cut at the gate's ends.
-/// Throws Error(input) where the gate is shorter than a bin.
 Gate make_gate(const Histogram& photons, double gate_s);
 
 /// Photons expected up to a time within the gate.

@@ -25,12 +25,12 @@ bool write_file(const std::string& path, const void* data, std::size_t size) {
   return std::fclose(file) == 0 && written;
 }
 
-text::Plot plot_of(const std::string& file, const std::string& image, const std::string& title, double start_s,
-                   double stop_s, double low_ns, double high_ns) {
+text::Plot plot_of(const std::string& file, const std::string& image, const std::string& title,
+                   const std::string& time_label, double start_s, double stop_s, double low_ns, double high_ns) {
   const double dx = (stop_s - start_s) / kWidth, dy = (high_ns - low_ns) / kHeight;
   text::Plot plot(file);
   plot.line("set tics nomirror out; unset grid; set tmargin at screen 0.92; set key horizontal");
-  plot.line("set xlabel 'time (s)'; set ylabel 'delay after a path by way of the reference point (ns)'");
+  plot.line("set xlabel '" + time_label + "'; set ylabel 'delay after a path by way of the reference point (ns)'");
   plot.line("set title " + text::gnuplot_text(title) + " font ',18'");
   plot.line(
       fmt::format("set xrange [{:.17g}:{:.17g}]; set yrange [{:.17g}:{:.17g}]", start_s, stop_s, low_ns, high_ns));
@@ -45,11 +45,14 @@ text::Plot plot_of(const std::string& file, const std::string& image, const std:
 
 }  // namespace
 
-ScatterPlot::ScatterPlot(double start_s, double stop_s, double low_ns, double high_ns)
+ScatterPlot::ScatterPlot(double start_s, double stop_s, double low_ns, double high_ns, double origin_s,
+                         const std::string& time_label)
     : start_s_(start_s),
       stop_s_(stop_s > start_s ? stop_s : start_s + 1.0),
       low_ns_(low_ns),
       high_ns_(high_ns),
+      origin_s_(origin_s),
+      time_label_(time_label),
       signal_(static_cast<std::size_t>(kWidth) * kHeight),
       noise_(signal_.size()) {}
 
@@ -96,9 +99,11 @@ std::vector<std::uint8_t> ScatterPlot::pixels() const {
 std::string ScatterPlot::draw(const std::string& folder, const std::string& file, const std::string& title) const {
   const std::string image = file + ".rgba", directory = folder.empty() ? "." : folder;
   const auto rgba = pixels();
-  const std::string fault = write_file(directory + "/" + image, rgba.data(), rgba.size())
-                                ? plot_of(file, image, title, start_s_, stop_s_, low_ns_, high_ns_).draw(directory)
-                                : "no " + file + ": cannot write a temporary file";
+  const std::string fault =
+      write_file(directory + "/" + image, rgba.data(), rgba.size())
+          ? plot_of(file, image, title, time_label_, origin_s_ + start_s_, origin_s_ + stop_s_, low_ns_, high_ns_)
+                .draw(directory)
+          : "no " + file + ": cannot write a temporary file";
   std::remove((directory + "/" + image).c_str());
   return fault;
 }

@@ -11,8 +11,9 @@ namespace clray::slr {
 
 class ScatterPlot {
  public:
-  /// Axes: time in s, delay in ns.
-  ScatterPlot(double start_s, double stop_s, double low_ns, double high_ns);
+  /// Axes: time in s, which reads `origin_s` at time 0, with its label; delay in ns.
+  ScatterPlot(double start_s, double stop_s, double low_ns, double high_ns, double origin_s = 0.0,
+              const std::string& time_label = "time (s)");
 
   void add(double time_s, double delay_ns, bool signal);
 
@@ -22,7 +23,8 @@ class ScatterPlot {
  private:
   std::vector<std::uint8_t> pixels() const;
 
-  double start_s_, stop_s_, low_ns_, high_ns_;
+  double start_s_, stop_s_, low_ns_, high_ns_, origin_s_;
+  std::string time_label_;
   std::vector<std::uint32_t> signal_, noise_;
 };
 

@@ -10,6 +10,7 @@
 
 #include "clray/error.hpp"
 #include "device/shots.hpp"
+#include "scene/motion.hpp"
 #include "shared/photon.h"
 #include "slr/link.hpp"
 
@@ -25,13 +26,6 @@ constexpr double kMostShots = 1e12;
   throw Error(ErrorCode::input, what, key);
 }
 
-bool from_source(const Scene& scene, const ResultKey& key) {
-  if (scene.observers.empty()) return true;
-  return std::any_of(scene.observers.begin(), scene.observers.end(), [&](const Observer& o) {
-    return o.monostatic && (key.observer.empty() || o.name == key.observer);
-  });
-}
-
 bool same_group(const ResultKey& a, const ResultKey& b) {
   return a.detector == b.detector && a.observer == b.observer && a.variant == b.variant && a.band == b.band;
 }
@@ -42,7 +36,7 @@ const DelayResult* first_of_group(const Result& result, const Scene& scene, cons
       return wanted.empty() || wanted == name;
     };
     if (fits(options.detector, d.key.detector) && fits(options.observer, d.key.observer) &&
-        fits(options.variant, d.key.variant) && from_source(scene, d.key)) {
+        fits(options.variant, d.key.variant) && seen_from_source(scene, d.key)) {
       return &d;
     }
   }
@@ -67,6 +61,13 @@ std::uint64_t count_shots(double duration_s, double rate_Hz) {
 
 }  // namespace
 
+bool seen_from_source(const Scene& scene, const ResultKey& key) {
+  if (scene.observers.empty()) return true;
+  return std::any_of(scene.observers.begin(), scene.observers.end(), [&](const Observer& o) {
+    return at_source(o, scene.source) && (key.observer.empty() || o.name == key.observer);
+  });
+}
+
 /// Shots of a block: distances (one, where they are fixed) and results.
 struct Session::Block {
   std::vector<double> range_m, brightness;
@@ -77,60 +78,63 @@ struct Session::Block {
 };
 
 Session::Session(const Result& result, const Scene& scene, const SessionOptions& options)
-    : station_(station_of(scene)), options_(options), wavelength_nm_(scene.source.wavelength_nm), ranges_(station_) {
+    : station_(station_of(scene)), options_(options), ranges_(station_) {
   const DelayResult* first = first_of_group(result, scene, options);
-  delays_.assign(std::max<std::size_t>(result.orientations.size(), 1), nullptr);
+  // A grid of Sun directions has orientations of its own after those of the motion, without delay results.
+  delays_.assign(orientation_count(*scene.motion), nullptr);
   for (const DelayResult& d : result.delay) {
     if (same_group(d.key, first->key) && d.key.orientation < delays_.size()) delays_[d.key.orientation] = &d;
   }
+  std::vector<Instant> times;
   for (std::size_t i = 0; i < delays_.size(); ++i) {
-    if (!delays_[i]) refuse(fmt::format("orientation {} has no delay result", i), "motion");
-    times_s_.push_back(result.orientations.empty() ? 0.0 : result.orientations[i].time_s);
+    if (!delays_[i] || i >= result.orientations.size())
+      refuse(fmt::format("orientation {} has no delay result", i), "motion");
+    times.push_back(instant_of(result.orientations[i].time_s));
   }
-  start_s_ = times_s_.front();
-  const double stop = scene.motion->stop_s > start_s_ ? scene.motion->stop_s : times_s_.back();
-  shots_ = count_shots(stop - start_s_, station_.rate_Hz);
+  start_ = times.front();
+  const double stop_s = motion_span(*scene.motion).second;
+  shots_ = count_shots(seconds_between(start_, instant_of(stop_s)), station_.rate_Hz);
+  for (const Instant& time : times) first_shots_.push_back(first_shot_at(seconds_between(start_, time)));
+  first_shots_.push_back(shots_);
   settings_.noise_per_ns = station_.noise_per_ns + station_.dark_per_ns;
   settings_.jitter_ns = station_.jitter_fwhm_s / kFwhmPerSigma * 1e9;
   settings_.seed = result.seed;
   settings_.threads = options.threads;
   // A gate of a later shot may come earlier by the change of range: at most 1e-4 of a period below 15 km/s.
   in_order_ = station_.dead_time_s > 0.0 && station_.dead_time_s > (1.0 - 1e-4) / station_.rate_Hz - station_.gate_s;
-  gate_of(*delays_.front());
-  start_range_m_ = ranges_.range_m(start_s_);
-  start_brightness_ = 4.0 * kPi * link_budget(station_, wavelength_nm_, start_range_m_).photons_per_m2;
-  ranges_.range_m(stop_s());
+  if (station_.gate_s < first->bin_width_s && options_.warnings) {
+    options_.warnings->push_back(
+        fmt::format("the gate of {:.4g} ns is shorter than a bin of the delay histogram ({:.4g} ns), over which the "
+                    "session spreads light evenly: use narrower bins",
+                    station_.gate_s * 1e9, first->bin_width_s * 1e9));
+  }
+  start_range_m_ = ranges_.range_m(start_);
+  start_brightness_ = 4.0 * kPi * link_budget(station_, scene.source.wavelength_nm, start_range_m_).photons_per_m2;
+  ranges_.range_m(time(shots_ - 1));
 }
 
-double Session::time_s(std::uint64_t shot) const {
-  return static_cast<double>(time_ps(shot)) * 1e-12;
-}
-
-std::int64_t Session::time_ps(std::uint64_t shot) const {
+Instant Session::time(std::uint64_t shot) const {
   const double k = static_cast<double>(shot), rate = station_.rate_Hz;
   const double seconds = std::floor(k / rate);
   const double rest = std::fma(-seconds, rate, k) / rate;
-  const double start = std::floor(start_s_);
-  return static_cast<std::int64_t>(start + seconds) * kPicosecondsPerSecond +
-         static_cast<std::int64_t>(std::llround((start_s_ - start) * 1e12)) +
-         static_cast<std::int64_t>(std::llround(rest * 1e12));
+  return later(start_, static_cast<std::int64_t>(seconds), static_cast<std::int64_t>(std::llround(rest * 1e12)));
 }
 
-double Session::stop_s() const {
-  return time_s(shots_ - 1);
+Instant Session::at(double since_s) const {
+  const double whole = std::floor(since_s);
+  return later(start_, static_cast<std::int64_t>(whole),
+               static_cast<std::int64_t>(std::llround((since_s - whole) * 1e12)));
 }
 
-/// The first shot fired at that time or later.
-std::uint64_t Session::first_shot_at(double time) const {
-  const double estimate = std::floor((time - start_s_) * station_.rate_Hz) - 2.0;
+/// The first shot not before a time, to a picosecond.
+std::uint64_t Session::first_shot_at(double since_s) const {
+  const double estimate = std::floor(since_s * station_.rate_Hz) - 2.0;
   auto shot = estimate > 0.0 ? static_cast<std::uint64_t>(estimate) : 0;
-  while (shot < shots_ && time_s(shot) < time - 1e-12) ++shot;
+  while (shot < shots_ && this->since_s(shot) < since_s - 1e-12) ++shot;
   return shot;
 }
 
 Gate Session::gate_of(const DelayResult& delay) const {
-  if (!(station_.gate_s >= delay.bin_width_s))
-    make_gate({delay.first_bin_start_s, delay.bin_width_s, {}}, station_.gate_s);
   const Histogram histogram{delay.first_bin_start_s, delay.bin_width_s, delay.bin_m2_per_sr};
   return make_gate(convolve(histogram, pulse_kernel(station_, delay.bin_width_s)), station_.gate_s);
 }
@@ -152,8 +156,11 @@ std::pair<double, double> Session::signal_window_ns() const {
 
 double Session::mean_cross_section_m2() const {
   double sum = 0.0;
-  for (const DelayResult* d : delays_) sum += 4.0 * kPi * d->intensity_m2_per_sr.value;
-  return sum / static_cast<double>(delays_.size());
+  for (std::size_t i = 0; i < delays_.size(); ++i) {
+    const auto shots = static_cast<double>(first_shots_[i + 1] - first_shots_[i]);
+    sum += shots * 4.0 * kPi * delays_[i]->intensity_m2_per_sr.value;
+  }
+  return sum / static_cast<double>(shots_);
 }
 
 void Session::set_ranges(std::uint64_t first, std::uint32_t count, Block* block) const {
@@ -161,7 +168,7 @@ void Session::set_ranges(std::uint64_t first, std::uint32_t count, Block* block)
   block->range_m.resize(size);
   block->brightness.resize(size);
   for (std::uint32_t i = 0; i < size; ++i) {
-    block->range_m[i] = ranges_.range_m(time_s(first + i));
+    block->range_m[i] = ranges_.range_m(time(first + i));
     const double nearer = start_range_m_ / block->range_m[i], squared = nearer * nearer;
     block->brightness[i] = start_brightness_ * (squared * squared);
   }
@@ -174,7 +181,7 @@ void Session::run_in_order(const Gate& gate, std::uint64_t first, std::uint32_t 
   block->shots.time_ns.resize(count);
   block->shots.kind.resize(count);
   for (std::uint32_t i = 0; i < count; ++i) {
-    const double opens_s = time_s(first + i) + 2.0 * block->range(i) / kLightSpeed + gate.opens_s;
+    const double opens_s = since_s(first + i) + 2.0 * block->range(i) / kLightSpeed + gate.opens_s;
     const double blind = expected_until(gate, (recovers_s_ - opens_s) * 1e9, block->light(i), settings_.noise_per_ns);
     double& time_ns = block->shots.time_ns[i];
     block->shots.kind[i] = photon_shot(gate.table.data(), gate.edges(), block->light(i), settings_.noise_per_ns, blind,
@@ -205,11 +212,8 @@ SessionSummary Session::run(const std::function<void(const Shot&)>& on_photon) {
   SessionSummary summary;
   Block block;
   std::uint64_t at = in_order_ ? 0 : begin;
-  auto orientation = static_cast<std::size_t>(std::upper_bound(times_s_.begin(), times_s_.end(), time_s(at) + 1e-12) -
-                                              times_s_.begin() - 1);
-  for (; at < end; ++orientation) {
-    const std::uint64_t next =
-        orientation + 1 < times_s_.size() ? std::min(first_shot_at(times_s_[orientation + 1]), end) : end;
+  for (std::size_t orientation = 0; at < end; ++orientation) {
+    const std::uint64_t next = std::min(first_shots_[orientation + 1], end);
     if (next <= at) continue;
     const Gate gate = gate_of(*delays_[orientation]);
     for (; at < next;) {
@@ -221,7 +225,7 @@ SessionSummary Session::run(const std::function<void(const Shot&)>& on_photon) {
         ++summary.shots;
         ++(kind == CLRAY_PHOTON_SIGNAL ? summary.signal : kind == CLRAY_PHOTON_NOISE ? summary.noise : summary.none);
         if (kind == CLRAY_PHOTON_NONE) continue;
-        on_photon({at + i, time_ps(at + i), block.range(i), gate.opens_s * 1e9 + block.shots.time_ns[i], kind});
+        on_photon({at + i, time(at + i), block.range(i), gate.opens_s * 1e9 + block.shots.time_ns[i], kind});
       }
       at += count;
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A session in the making: which delay results it shoots at, its shots one block after another, for the writer and
-// for tests. Times in s of the scene's motion.
+// for tests. Times are those of the scene's motion, or in s from the session's start.
 #pragma once
 
 #include <functional>
@@ -8,15 +8,20 @@
 #include <vector>
 
 #include "clray/session.hpp"
+#include "ephemeris/range.hpp"
 #include "slr/gate.hpp"
-#include "slr/range.hpp"
 
 namespace clray::slr {
+
+using namespace ephemeris;
+
+/// Whether a record is of an observer at the source.
+bool seen_from_source(const Scene& scene, const ResultKey& key);
 
 /// One fired shot with what it recorded.
 struct Shot {
   std::uint64_t number = 0;
-  std::int64_t time_ps = 0;  ///< of fire, from session time 0
+  Instant time;  ///< of fire
   double range_m = 0.0;
   double delay_ns = 0.0;   ///< flight time minus 2 range/c
   std::uint32_t kind = 0;  ///< CLRAY_PHOTON_*
@@ -31,15 +36,17 @@ class Session {
   std::uint64_t shots() const { return shots_; }
   const RangeModel& ranges() const { return ranges_; }
   const ResultKey& key() const { return delays_.front()->key; }
-  double start_s() const { return start_s_; }
-  double stop_s() const;  ///< of the last shot
-  double time_s(std::uint64_t shot) const;
-  std::int64_t time_ps(std::uint64_t shot) const;
+  /// When a shot is fired: in the motion's time, and from the session's start.
+  Instant time(std::uint64_t shot) const;
+  double since_s(std::uint64_t shot) const { return seconds_between(start_, time(shot)); }
+  /// The motion's time so long after the session's start.
+  Instant at(double since_s) const;
+  double last_since_s() const { return since_s(shots_ - 1); }  ///< of the last shot
 
   /// Delays between which signal is expected, ns, over all orientations; both 0 where there is none.
   std::pair<double, double> signal_window_ns() const;
 
-  /// Mean cross-section over the orientations, 4 pi A, m^2.
+  /// Mean cross-section over the shots, 4 pi A, m^2.
   double mean_cross_section_m2() const;
 
   /// Fires the shots that the options ask for, in order, and hands over those that recorded a photon.
@@ -50,21 +57,20 @@ class Session {
   void run_block(const Gate& gate, std::uint64_t first, std::uint32_t count, Block* block);
   void run_in_order(const Gate& gate, std::uint64_t first, std::uint32_t count, Block* block);
   void set_ranges(std::uint64_t first, std::uint32_t count, Block* block) const;
-  std::uint64_t first_shot_at(double time_s) const;
+  std::uint64_t first_shot_at(double since_s) const;
   Gate gate_of(const DelayResult& delay) const;
 
   const Station& station_;
   SessionOptions options_;
-  double wavelength_nm_ = 532.0;
   RangeModel ranges_;
   ShotSettings settings_;
   double start_range_m_ = 0.0, start_brightness_ = 0.0;  // photons per m^2/sr there; they go with range^-4
-  double start_s_ = 0.0;
+  Instant start_;
   std::uint64_t shots_ = 0;
   bool in_order_ = false;                   ///< a dead time that reaches into the next shot's gate
-  double recovers_s_ = -1e300;              ///< when the detector sees again
-  std::vector<double> times_s_;             ///< of the orientations
+  double recovers_s_ = -1e300;              ///< when the detector sees again, from the start
   std::vector<const DelayResult*> delays_;  ///< one per orientation
+  std::vector<std::uint64_t> first_shots_;  ///< of each orientation, and all shots at the end
 };
 
 }  // namespace clray::slr

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The files of a session: observations.csv, .crd and .png, and its entry in the summary; expected photon rates.
+// The files of a session: observations.csv, .crd and .png, its entry in the summary, and what a person is told of it.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,7 +12,10 @@
 #include "slr/link.hpp"
 #include "slr/scatter_plot.hpp"
 #include "slr/session.hpp"
+#include "text/columns.hpp"
 #include "text/file_names.hpp"
+#include "text/gnuplot.hpp"
+#include "text/text.hpp"
 
 namespace clray::slr {
 
@@ -27,17 +30,12 @@ std::string word(const std::string& name, std::size_t most = 10) {
   return text.empty() ? "na" : text.substr(0, most);
 }
 
-Epoch after(const Epoch& zero, std::int64_t ps) {
-  const std::int64_t days = ps / kPicosecondsPerDay;
-  return normalised({zero.mjd + days, zero.ps + (ps - days * kPicosecondsPerDay)});
-}
-
 CrdHeader crd_header(const Session& session, const Scene& scene, std::uint64_t first, std::uint64_t last) {
   const Station& s = *scene.station;
   CrdHeader h;
   h.produced = production_epoch();
-  h.start = after(session.ranges().zero(), session.time_ps(first));
-  h.stop = after(session.ranges().zero(), session.time_ps(last));
+  h.start = epoch_of(session.ranges().zero(), session.time(first));
+  h.stop = epoch_of(session.ranges().zero(), session.time(last));
   h.station = word(s.name);
   h.target = word(scene.name);
   if (const Prediction* p = session.ranges().prediction()) {
@@ -63,10 +61,10 @@ CrdHeader crd_header(const Session& session, const Scene& scene, std::uint64_t f
 }
 
 /// How fast the range changes, by a central difference over 0.2 s (or what the pass allows).
-double range_rate(const Session& session, double time_s) {
-  const double from = std::max(session.start_s(), time_s - 0.1), to = std::min(session.stop_s(), time_s + 0.1);
+double range_rate(const Session& session, double since_s) {
+  const double from = std::max(0.0, since_s - 0.1), to = std::min(session.last_since_s(), since_s + 0.1);
   if (!(to > from)) return 0.0;
-  return (session.ranges().range_m(to) - session.ranges().range_m(from)) / (to - from);
+  return (session.ranges().range_m(session.at(to)) - session.ranges().range_m(session.at(from))) / (to - from);
 }
 
 void csv_head(TextFile* csv, const Result& result, const Scene& scene, const Session& session) {
@@ -75,11 +73,12 @@ void csv_head(TextFile* csv, const Result& result, const Scene& scene, const Ses
   csv->text("# epoch_s: time of fire, s after MJD ").text(std::to_string(zero.mjd)).text(" UTC + ");
   csv->decimal(zero.ps, 12).text(" s; flight_time_s: two-way; residual_ns: flight time minus 2 range/c\n");
   csv->text(fmt::format("# scene {}, seed {}, digest {:016x}, shots {} at {} Hz\n",
-                        scene.path.empty() ? scene.name : scene.path, result.seed, result.digest, session.shots(),
-                        scene.station->rate_Hz));
+                        text::one_line(scene.path.empty() ? scene.name : scene.path), result.seed, result.digest,
+                        session.shots(), scene.station->rate_Hz));
   csv->text("epoch_s,flight_time_s,residual_ns,kind\n");
 }
 
+/// The picture of the shots from `start_s` to `stop_s` after the session's start.
 ScatterPlot picture_of(const Session& session, const Station& station, double start_s, double stop_s) {
   const double half_gate = 0.5e9 * station.gate_s;
   auto [low, high] = session.signal_window_ns();
@@ -90,7 +89,10 @@ ScatterPlot picture_of(const Session& session, const Station& station, double st
     low = -half_gate;
     high = half_gate;
   }
-  return ScatterPlot(start_s, stop_s, low, high);
+  const double session_s = seconds_between({}, session.time(0));
+  const text::TimeAxis axis = text::time_axis(session_s + start_s, session_s + stop_s);
+  const double origin_s = seconds_between(instant_of(axis.zero_s), session.time(0));
+  return ScatterPlot(start_s, stop_s, low, high, origin_s, axis.label);
 }
 
 }  // namespace
@@ -106,27 +108,28 @@ static SessionSummary write_files(Session& session, const Result& result, const 
   csv_head(&csv, result, scene, session);
   const CrdHeader header = crd_header(session, scene, first, last);
   const auto supplement = [&](std::uint64_t shot) {
-    return CrdSupplement{after(session.ranges().zero(), session.time_ps(shot)).ps,
-                         range_rate(session, session.time_s(shot))};
+    return CrdSupplement{epoch_of(session.ranges().zero(), session.time(shot)).ps,
+                         range_rate(session, session.since_s(shot))};
   };
   CrdWriter crd(path + ".crd", header, supplement(first));
   ScatterPlot picture =
-      picture_of(session, station, session.time_s(first), session.time_s(last) + 1.0 / station.rate_Hz);
-  std::int64_t next_supplement = session.time_ps(first) + 60 * kPicosecondsPerSecond;
+      picture_of(session, station, session.since_s(first), session.since_s(last) + 1.0 / station.rate_Hz);
+  double next_supplement_s = session.since_s(first) + 60.0;
   const SessionSummary summary = session.run([&](const Shot& shot) {
     const bool signal = shot.kind == CLRAY_PHOTON_SIGNAL;
     const double flight_ps = 2.0 * shot.range_m / kLightSpeed * 1e12 + shot.delay_ns * 1e3;
     const auto whole = static_cast<std::int64_t>(std::llround(flight_ps));
-    csv.decimal(shot.time_ps, 12).text(",").decimal(whole, 12).text(",");
+    csv.seconds(shot.time.s, shot.time.ps).text(",").decimal(whole, 12).text(",");
     csv.decimal(static_cast<std::int64_t>(std::llround(shot.delay_ns * 1e6)), 6);
     csv.text(signal ? ",signal" : ",noise").end_line();
-    if (shot.time_ps >= next_supplement) {
+    const double since_s = session.since_s(shot.number);
+    if (since_s >= next_supplement_s) {
       crd.supplement(supplement(shot.number));
-      next_supplement = shot.time_ps + 60 * kPicosecondsPerSecond;
+      next_supplement_s = since_s + 60.0;
     }
-    crd.range({after(session.ranges().zero(), shot.time_ps).ps, whole,
+    crd.range({epoch_of(session.ranges().zero(), shot.time).ps, whole,
                station.flag_signal ? static_cast<int>(shot.kind) : 0});
-    picture.add(static_cast<double>(shot.time_ps) * 1e-12, shot.delay_ns, signal);
+    picture.add(since_s, shot.delay_ns, signal);
   });
   csv.close();
   crd.close();
@@ -152,24 +155,67 @@ std::string json_text(const std::string& text) {
   return quoted + "\"";
 }
 
-std::string session_json(const Session& session, const SessionSummary& summary, const Scene& scene) {
-  const double sigma = session.mean_cross_section_m2(), range = session.ranges().range_m(session.start_s());
+/// What is said of a session, in the summary and on the terminal alike.
+struct Findings {
+  SessionSummary counts;
+  double range_m = 0.0, mean_cross_section_m2 = 0.0, start_mjd = 0.0;
+  std::vector<LinkRow> link;
+  double received = 0.0;  ///< photoelectrons per pulse from the mean cross-section, at the session's start
+};
+
+Findings findings_of(const Session& session, const SessionSummary& counts, const Scene& scene) {
+  Findings f;
+  f.counts = counts;
+  f.range_m = session.ranges().range_m(session.time(0));
+  f.mean_cross_section_m2 = session.mean_cross_section_m2();
+  const Epoch zero = session.ranges().zero();
+  f.start_mjd = static_cast<double>(zero.mjd) + static_cast<double>(zero.ps) / static_cast<double>(kPicosecondsPerDay);
+  const double wavelength_nm = scene.source.wavelength_nm;
+  f.link = link_rows(*scene.station, wavelength_nm, f.mean_cross_section_m2, {f.range_m, f.range_m});
+  f.received = link_budget(*scene.station, wavelength_nm, f.range_m).photons_per_m2 * f.mean_cross_section_m2;
+  return f;
+}
+
+std::string json_number(double value) {
+  return std::isfinite(value) ? fmt::format("{:.9g}", value) : "null";
+}
+
+/// A default as keys.def words it: a number, or none.
+std::string json_default(const std::string& text) {
+  const bool number = !text.empty() && text.find_first_not_of("0123456789.e+-") == std::string::npos;
+  return number ? text : "null";
+}
+
+std::string session_json(const Findings& f) {
   std::string link;
-  for (const LinkRow& row : link_rows(*scene.station, scene.source.wavelength_nm, sigma, range)) {
+  for (const LinkRow& row : f.link) {
     const std::size_t begin = row.key.find_first_not_of(' ');
     if (!link.empty()) link += ", ";
-    link +=
-        fmt::format("{}: {{\"value\": {}, \"unit\": {}, \"default\": {}, \"range\": {}}}",
-                    json_text(row.key.substr(begin)), row.value == "table" ? "\"table\"" : row.value,
-                    json_text(row.unit), row.default_value.empty() ? "null" : row.default_value, json_text(row.range));
+    link += fmt::format("{}: {{\"value\": {}, \"unit\": {}, \"default\": {}, \"range\": {}}}",
+                        json_text(row.key.substr(begin)), std::isnan(row.value) ? "\"table\"" : json_number(row.value),
+                        json_text(row.unit), json_default(row.default_value), json_text(row.range));
   }
   return fmt::format(
       "{{\"shots\": {}, \"signal\": {}, \"noise\": {}, \"none\": {}, \"range_m\": {:.6f}, "
-      "\"mean_cross_section_m2\": {:.9g}, \"start_mjd\": {:.9f}, \"link\": {{{}}}}}",
-      summary.shots, summary.signal, summary.noise, summary.none, range, sigma,
-      static_cast<double>(session.ranges().zero().mjd) +
-          static_cast<double>(session.ranges().zero().ps) / static_cast<double>(kPicosecondsPerDay),
-      link);
+      "\"mean_cross_section_m2\": {}, \"start_mjd\": {:.9f}, \"link\": {{{}}}}}",
+      f.counts.shots, f.counts.signal, f.counts.noise, f.counts.none, f.range_m, json_number(f.mean_cross_section_m2),
+      f.start_mjd, link);
+}
+
+/// A row for each session, then the link budget of the first.
+std::string sessions_text(const std::vector<std::pair<std::string, Findings>>& sessions) {
+  text::Columns columns;
+  columns.add({"session", "shots", "signal", "noise", "none", "mean cross-section", "received per pulse"});
+  for (const auto& [name, f] : sessions) {
+    columns.add({name, fmt::format("{}", f.counts.shots), fmt::format("{}", f.counts.signal),
+                 fmt::format("{}", f.counts.noise), fmt::format("{}", f.counts.none),
+                 fmt::format("{:.6g} m^2", f.mean_cross_section_m2), fmt::format("{:.6g}", f.received)});
+  }
+  const auto& [name, first] = sessions.front();
+  return columns.text("") +
+         fmt::format("\nLink budget{}, at the session's start, for the mean cross-section over its shots:\n",
+                     sessions.size() > 1 ? " of " + name : "") +
+         link_text(first.link);
 }
 
 /// One key for each session: the groups of delay results seen from the source.
@@ -179,11 +225,7 @@ std::vector<ResultKey> session_keys(const Result& result, const Scene& scene) {
     const bool known = std::any_of(keys.begin(), keys.end(), [&](const ResultKey& k) {
       return k.detector == d.key.detector && k.observer == d.key.observer && k.variant == d.key.variant;
     });
-    const bool seen =
-        scene.observers.empty() || std::any_of(scene.observers.begin(), scene.observers.end(), [&](const Observer& o) {
-          return o.monostatic && (d.key.observer.empty() || o.name == d.key.observer);
-        });
-    if (!known && seen) keys.push_back(d.key);
+    if (!known && seen_from_source(scene, d.key)) keys.push_back(d.key);
   }
   return keys;
 }
@@ -192,7 +234,8 @@ std::vector<ResultKey> session_keys(const Result& result, const Scene& scene) {
 std::vector<std::string> own_names(const std::vector<ResultKey>& keys, const ResultKey& key) {
   std::vector<std::string> names;
   for (const auto name : {&ResultKey::detector, &ResultKey::observer, &ResultKey::variant}) {
-    const bool differs = std::any_of(keys.begin(), keys.end(), [&](const ResultKey& k) { return k.*name != key.*name; });
+    const bool differs =
+        std::any_of(keys.begin(), keys.end(), [&](const ResultKey& k) { return k.*name != key.*name; });
     if (differs && !(key.*name).empty()) names.push_back(key.*name);
   }
   return names;
@@ -205,8 +248,9 @@ std::vector<std::string> own_names(const std::vector<ResultKey>& keys, const Res
 namespace clray {
 
 bool has_session(const Scene& scene) {
-  const bool seen = scene.observers.empty() || std::any_of(scene.observers.begin(), scene.observers.end(),
-                                                           [](const Observer& o) { return o.monostatic; });
+  const bool seen =
+      scene.observers.empty() || std::any_of(scene.observers.begin(), scene.observers.end(),
+                                             [&](const Observer& o) { return at_source(o, scene.source); });
   return scene.station && scene.motion && scene.source.kind == Source::Kind::laser && seen;
 }
 
@@ -221,10 +265,12 @@ MoreFiles session_files(const Result& result, const Scene& scene, const std::str
   MoreFiles files;
   if (!has_session(scene) || result.delay.empty()) return files;
   const std::vector<ResultKey> keys = slr::session_keys(result, scene);
+  if (keys.empty()) return files;
   text::FileNames names;
   for (const auto& entry : std::filesystem::directory_iterator(folder.empty() ? "." : folder)) {
     names.reserve(entry.path().stem().string());
   }
+  std::vector<std::pair<std::string, slr::Findings>> sessions;
   for (const ResultKey& key : keys) {
     SessionOptions one = options;
     one.detector = key.detector;
@@ -239,40 +285,17 @@ MoreFiles session_files(const Result& result, const Scene& scene, const std::str
     for (const char* end : {".csv", ".crd", ".png"}) {
       if (options.plots || std::string(end) != ".png") files.names.push_back(one.stem + end);
     }
-    const std::string entry = slr::session_json(session, summary, scene);
-    files.summary_json += keys.size() == 1 ? entry
-                                           : (files.summary_json.empty() ? "{" : ", ") +
-                                                 slr::json_text(fmt::format("{}", fmt::join(own, "/"))) + ": " + entry;
+    sessions.emplace_back(fmt::format("{}", fmt::join(own, "/")), slr::findings_of(session, summary, scene));
   }
-  if (keys.size() > 1) files.summary_json += "}";
+  for (const auto& [name, findings] : sessions) {
+    const std::string entry = slr::session_json(findings);
+    files.summary_json +=
+        sessions.size() == 1 ? entry : (files.summary_json.empty() ? "{" : ", ") + slr::json_text(name) + ": " + entry;
+  }
+  if (sessions.size() > 1) files.summary_json += "}";
   files.summary_key = "session";
+  files.text = slr::sessions_text(sessions);
   return files;
-}
-
-std::vector<double> photons_per_ns(const DelayResult& delay, const Station& station, double range_m,
-                                   double wavelength_nm) {
-  const double photons = 4.0 * slr::kPi * slr::link_budget(station, wavelength_nm, range_m).photons_per_m2;
-  const slr::Histogram bins{delay.first_bin_start_s, delay.bin_width_s, delay.bin_m2_per_sr};
-  const slr::PulseKernel kernel = slr::pulse_kernel(station, delay.bin_width_s);
-  const slr::Histogram smeared = slr::convolve(bins, kernel);
-  const long shift = std::lround((delay.first_bin_start_s - smeared.first_s) / delay.bin_width_s);
-  const double per_ns = photons / (delay.bin_width_s * 1e9);
-  std::vector<double> rates(bins.mass.size(), 0.0);
-  for (std::size_t i = 0; i < rates.size(); ++i) {
-    for (long cut = 0; cut < kernel.cuts; ++cut) {
-      const long from = (static_cast<long>(i) + shift) * kernel.cuts + cut;
-      if (from >= 0 && from < static_cast<long>(smeared.mass.size()))
-        rates[i] += smeared.mass[static_cast<std::size_t>(from)];
-    }
-    rates[i] *= per_ns;
-  }
-  return rates;
-}
-
-double session_range_m(const Scene& scene) {
-  if (!scene.station) throw Error(ErrorCode::input, "a range needs a [station]", "station");
-  const slr::RangeModel ranges(*scene.station);
-  return ranges.range_m(scene.motion ? scene.motion->start_s : 0.0);
 }
 
 }  // namespace clray

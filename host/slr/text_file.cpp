@@ -47,6 +47,21 @@ TextFile& TextFile::decimal(std::int64_t value, int decimals) {
   return *this;
 }
 
+TextFile& TextFile::seconds(std::int64_t s, std::int64_t ps) {
+  constexpr std::int64_t kSecond_ps = 1000000000000;
+  if (s < 0) buffer_ += '-';
+  if (s < 0 && ps > 0) {
+    ++s;
+    ps = kSecond_ps - ps;
+  }
+  buffer_ += std::to_string(s < 0 ? -s : s);
+  char digits[13];
+  for (int k = 12; k > 0; --k, ps /= 10) digits[k] = static_cast<char>('0' + ps % 10);
+  digits[0] = '.';
+  buffer_.append(digits, sizeof digits);
+  return *this;
+}
+
 TextFile& TextFile::end_line() {
   buffer_ += '\n';
   if (buffer_.size() >= kPiece) flush();

@@ -21,6 +21,8 @@ class TextFile {
   TextFile& text(std::string_view text);
   /// `value`·10^-decimals, decimals 1 … 18.
   TextFile& decimal(std::int64_t value, int decimals);
+  /// `s` seconds and `ps` picoseconds of [0, 1e12), as seconds with 12 decimals.
+  TextFile& seconds(std::int64_t s, std::int64_t ps);
   TextFile& end_line();
 
   /// Throws Error(output) where anything could not be written.

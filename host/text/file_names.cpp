@@ -15,15 +15,15 @@ namespace {
 constexpr std::size_t kLongestPart = 48;
 
 std::uint32_t folded(std::uint32_t c) {
-  if ((c >= 'A' && c <= 'Z') || (c >= 0xc0 && c <= 0xde)) return c + 0x20;  // ASCII, Latin-1
+  if ((c >= 'A' && c <= 'Z') || (c >= 0xc0 && c <= 0xde)) return c + 0x20;             // ASCII, Latin-1
   if ((c >= 0x139 && c <= 0x148) || (c >= 0x179 && c <= 0x17e)) return (c + 1) & ~1u;  // extended Latin: pairs
   if (c >= 0x100 && c <= 0x24f) return c & ~1u;
-  if (c >= 0x391 && c <= 0x3ab) return c + 0x20;                            // Greek
-  if (c >= 0x410 && c <= 0x42f) return c + 0x20;                            // Cyrillic
+  if (c >= 0x391 && c <= 0x3ab) return c + 0x20;  // Greek
+  if (c >= 0x410 && c <= 0x42f) return c + 0x20;  // Cyrillic
   if (c >= 0x400 && c <= 0x40f) return c + 0x50;
   if (c >= 0x460 && c <= 0x52f) return c & ~1u;
-  if (c >= 0x531 && c <= 0x556) return c + 0x30;    // Armenian
-  if (c >= 0x1e00 && c <= 0x1eff) return c & ~1u;   // Latin with several marks
+  if (c >= 0x531 && c <= 0x556) return c + 0x30;   // Armenian
+  if (c >= 0x1e00 && c <= 0x1eff) return c & ~1u;  // Latin with several marks
   return c;
 }
 

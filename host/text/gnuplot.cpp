@@ -28,6 +28,13 @@ std::string gnuplot_text(std::string_view text) {
   return literal + "' noenhanced";
 }
 
+TimeAxis time_axis(double first_s, double last_s) {
+  const double farthest = std::fmax(std::fabs(first_s), std::fabs(last_s));
+  if (!(farthest > 2e4 * std::fabs(last_s - first_s)) || first_s == last_s) return {0.0, "time (s)"};
+  const double zero_s = std::floor(first_s);
+  return {zero_s, "time after " + number(zero_s) + " s (s)"};
+}
+
 Plot::Plot(const std::string& file, int width, int height) : file_(file) {
   const std::string size = std::to_string(width) + "," + std::to_string(height);
   line("set encoding utf8");

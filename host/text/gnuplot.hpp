@@ -11,6 +11,14 @@ namespace clray::text {
 /// Text as a gnuplot string literal, on one line, to be shown as it is.
 std::string gnuplot_text(std::string_view text);
 
+/// What to take from times for an axis, and the axis' label: nothing, or, where labels of six digits would all read the
+/// same (Unix seconds …), the whole seconds of the first.
+struct TimeAxis {
+  double zero_s = 0.0;
+  std::string label;
+};
+TimeAxis time_axis(double first_s, double last_s);
+
 /// A gnuplot script in the making.
 class Plot {
  public:

@@ -173,6 +173,7 @@ struct Result {
 struct MoreFiles {
   std::vector<std::string> names;         ///< written into the folder given
   std::string summary_key, summary_json;  ///< an entry for summary.json, as JSON text; empty for none
+  std::string text = {};                  ///< what of it a person wants to see first; empty for nothing
 };
 
 /// How to write results.

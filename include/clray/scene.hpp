@@ -127,6 +127,12 @@ struct Observer {
   double range_m = 0.0;         ///< distance, for received power and magnitude; 0: that of the station, if any
 };
 
+/// Whether an observer is where the source is: because the scene says so, or because their directions are equal bit for
+/// bit.
+inline bool at_source(const Observer& observer, const Source& source) {
+  return observer.monostatic || observer.direction == source.direction;
+}
+
 /// Body-to-space attitude at a time.
 struct Attitude {
   double time_s = 0.0;

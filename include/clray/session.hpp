@@ -43,16 +43,13 @@ bool has_session(const Scene& scene);
 std::vector<double> photons_per_ns(const DelayResult& delay, const Station& station, double range_m,
                                    double wavelength_nm = 532.0);
 
-/// One-way distance at the session's start (fixed, or from its table or prediction). Throws Error(input).
-double session_range_m(const Scene& scene);
+/// Fills in `photons_per_ns` of all delay results of a scene with a station and a laser: each at the range of its
+/// orientation's time, and toward an observer elsewhere at that observer's own range (that of the station if he has
+/// none) with the station's receiver. Throws Error(input).
+void expect_photons(const Scene& scene, Result* result);
 
-/// The link budget for a person: every factor with its value, unit, default and range, and the photons per pulse from
-/// `cross_section_m2`, at `range_m` (station.range_m if 0).
-std::string link_budget_table(const Station& station, double wavelength_nm, double cross_section_m2,
-                              double range_m = 0.0);
-
-/// Reads an ILRS CPF v2 prediction strictly and says what is in it (target, epochs, records).
-/// Throws Error(input) with file:line.
-std::string describe_prediction(const std::string& cpf_file);
+/// The link budget of a result's first delay record, for a person: every factor with its value, unit, default and
+/// range, and the photons per pulse. Empty without a station, a laser or a delay record. Throws Error(input).
+std::string link_budget_text(const Scene& scene, const Result& result);
 
 }  // namespace clray

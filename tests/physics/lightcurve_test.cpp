@@ -75,6 +75,26 @@ TEST_CASE("spinning Lambert plate: cos^2 of its turn, orientation by orientation
   }
 }
 
+TEST_CASE("received power goes with the range of its own time, also where that comes from a table") {
+  clray::Scene scene = sunlit("rectangle", {{"size_x", 2.0}, {"size_y", 1.0}}, lambert(0.5));
+  monostatic(scene, {0, 0, 1});
+  scene.motion.emplace();
+  scene.motion->period_s = 40.0;
+  scene.motion->start_s = 1.7e9;
+  scene.motion->stop_s = 1.7e9 + 35.0;
+  scene.motion->step_rad = radians(45.0);  // 5 s, between the rows of the table
+  // A parabola, which a cubic through four rows has exactly and a line through two has not.
+  const auto range = [](double t) { return 2e6 - 1e5 * t + 4e3 * t * t; };
+  for (const double t : {0.0, 11.0, 22.0, 33.0, 44.0}) scene.station->ranges.emplace_back(1.7e9 + t, range(t));
+  rays(scene, 14);
+  const clray::Result result = run(scene);
+  REQUIRE(result.spectrometer.size() == 8);
+  for (const clray::SpectrometerResult& found : result.spectrometer) {
+    const double r = range(5.0 * static_cast<double>(found.key.orientation));
+    CHECK(found.received_W_m2 == relative(found.intensity_m2_per_sr.value * 1.5 / (r * r)).epsilon(1e-9));
+  }
+}
+
 TEST_CASE("spectral reflectance: each band sees its own") {
   clray::Material m = lambert(1.0);
   m.spectra["rho"] = clray::Spectrum{{400.0, 800.0}, {0.2, 0.6}};

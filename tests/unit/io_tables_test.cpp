@@ -154,16 +154,12 @@ TEST_CASE("several orientations and observers: rows carry their orientation, fil
 TEST_CASE("like names of variants, observers and bands: as many files as records, each with its own numbers") {
   Scratch scratch;
   Result result = io_test::result();
-  const std::vector<std::array<std::string, 3>> keys = {{"", "a b", ""},
-                                                        {"", "a-b", ""},
-                                                        {"", "A B", ""},
-                                                        {"a", "b", ""},
-                                                        {"a-b", "c", ""},
-                                                        {"a", "b-c", ""},
-                                                        {"", "a", "b"},
-                                                        {std::string(200, 'o'), std::string(200, 'v'), std::string(200, 'b')},
-                                                        {"", "x-totals", ""},
-                                                        {"", "x", ""}};
+  const std::vector<std::array<std::string, 3>> keys = {
+      {"", "a b", ""},      {"", "a-b", ""},
+      {"", "A B", ""},      {"a", "b", ""},
+      {"a-b", "c", ""},     {"a", "b-c", ""},
+      {"", "a", "b"},       {std::string(200, 'o'), std::string(200, 'v'), std::string(200, 'b')},
+      {"", "x-totals", ""}, {"", "x", ""}};
   for (std::size_t i = 0; i < keys.size(); ++i) {
     for (std::size_t orientation : {0u, 1u}) {
       result.delay.push_back(delay(4, orientation));

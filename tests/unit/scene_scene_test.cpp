@@ -119,7 +119,7 @@ material = [{ name = "panel", n = 50, rho = 0.9 }, { name = "tab", model = "lamb
 TEST_CASE("scene: light, motion, station, detectors and trace arrive in SI") {
   const SceneFolder f;
   f.write("pulse.csv", "time_ps,power\n0,0\n10,1\n20,0\n");
-  f.write("range.csv", "0,1e6\n10,1.1e6\n");
+  f.write("range.csv", "0,1e6\n30,1.1e6\n");
   const Scene s = f.load(kBall + R"([source]
 kind = "sun"
 direction = [0, 3, 4]
@@ -195,7 +195,7 @@ replicates = 32
   CHECK(orientations(s).size() == 91);
   const Station& t = *s.station;
   CHECK(t.name == "hill");
-  CHECK(t.ranges[1] == std::pair<double, double>(10, 1.1e6));
+  CHECK(t.ranges[1] == std::pair<double, double>(30, 1.1e6));
   CHECK(t.position_m == Vec3(6e6, 1, 2));
   CHECK(t.start_mjd == 60000.5);
   CHECK(t.pulse_energy_J == 0.1);

@@ -104,9 +104,9 @@ TEST_CASE("toml: numbers out of range or not finite") {
   CHECK(f.complaint("[[component]]\nshape = \"disk\"\nradius = 1\ninner_radius = 1\n") ==
         "s.toml:1:1: component.inner_radius: expected less than radius = 1, found 1");
   CHECK(f.complaint(kBall + "[station]\nrange_m = -1\n") ==
-        "s.toml:3:11: station.range_m: expected a number in (0,inf), found -1");
+        "s.toml:3:11: station.range_m: expected a number in [1e-3,1e13], found -1");
   CHECK(f.complaint(kBall + "[station]\ndivergence_urad = 0\n") ==
-        "s.toml:3:19: station.divergence_urad: expected a number in (0,inf), found 0");
+        "s.toml:3:19: station.divergence_urad: expected a number in [1e-9,4e6], found 0");
   CHECK(f.complaint(kBall + "[trace]\nmax_bounces = 65\n") ==
         "s.toml:3:15: trace.max_bounces: expected a whole number in [1..64], found 65");
   CHECK(f.complaint("length_unit = 0\n" + kBall) == "s.toml:1:15: length_unit: expected a number in (0,inf), found 0");

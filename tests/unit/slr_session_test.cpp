@@ -47,6 +47,8 @@ struct Pass {
     scene.station.emplace();
     scene.motion.emplace();
     scene.motion->stop_s = seconds;
+    for (int i = 0; i < orientations; ++i)
+      scene.motion->attitudes.push_back({seconds * i / orientations, {1, 0, 0, 0}});
     result.seed = 42;
     for (int i = 0; i < orientations; ++i) {
       result.orientations.push_back(
@@ -90,7 +92,7 @@ TEST_CASE("a session: counts as expected, each photon where its orientation has 
   const double photons = 4.0 * kPi * 0.03 * link_budget(*pass.scene.station, 532.0, 1e6).photons_per_m2;
   std::uint64_t last = 0, wrong = 0;
   const SessionSummary s = session.run([&](const Shot& shot) {
-    CHECK(shot.time_ps == static_cast<std::int64_t>(shot.number) * 500000000);
+    CHECK(shot.time.s * kPicosecondsPerSecond + shot.time.ps == static_cast<std::int64_t>(shot.number) * 500000000);
     if (last != 0 && shot.number <= last) ++wrong;
     last = shot.number;
     const double orientation = std::floor(static_cast<double>(shot.number) / 4000.0);
@@ -294,8 +296,8 @@ TEST_CASE("sessions whose variants have like or long names have files of their o
   const DelayResult delay = pass.result.delay.front();
   pass.result.delay.clear();
   // The light of each is a share of the noise-free gate's: the files must not hold one another's photons.
-  const std::vector<std::string> variants = {"a b", "a-b", "A B", "тёмный", "чёрный", std::string(300, 'x'),
-                                             std::string(299, 'x') + "y"};
+  const std::vector<std::string> variants = {
+      "a b", "a-b", "A B", "тёмный", "чёрный", std::string(300, 'x'), std::string(299, 'x') + "y"};
   pass.scene.station->noise_per_ns = 0.0;
   for (std::size_t i = 0; i < variants.size(); ++i) {
     pass.result.delay.push_back(delay);
@@ -322,10 +324,14 @@ TEST_CASE("scenes that make no session are refused") {
   refused("needs a [station]", [](Pass& p) { p.scene.station.reset(); });
   refused("needs a [motion]", [](Pass& p) { p.scene.motion.reset(); });
   refused("source.kind", [](Pass& p) { p.scene.source.kind = Source::Kind::sun; });
-  refused("seen from the source", [](Pass& p) { p.scene.observers[0].monostatic = false; });
-  refused("shorter than a bin", [](Pass& p) { p.scene.station->gate_s = 0.05e-9; });
-  refused("station.range_m: is -5", [](Pass& p) { p.scene.station->range_m = -5.0; });
-  refused("station.divergence_urad: is 0", [](Pass& p) { p.scene.station->divergence_rad = 0.0; });
+  refused("seen from the source", [](Pass& p) {
+    p.scene.observers[0].monostatic = false;
+    p.scene.observers[0].direction = Vec3(1, 0, 0);
+  });
+  refused("station.range_m: expected a number in [1e-3,1e13], found -5",
+          [](Pass& p) { p.scene.station->range_m = -5.0; });
+  refused("station.divergence_rad: expected a number in [1e-9,4e6] urad, found 0",
+          [](Pass& p) { p.scene.station->divergence_rad = 0.0; });
   refused("outside the table", [](Pass& p) { p.scene.station->ranges = {{0.0, 1e6}, {19.0, 1e6}}; });
   refused("orientation 2 has no delay result", [](Pass& p) { p.result.delay.pop_back(); });
   refused("station.cpf", [](Pass& p) {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Names of files from users' names: safe, short, and distinct also where a file system ignores case.
-#include "text/file_names.hpp"
-
 #include <doctest/doctest.h>
 
 #include <set>
+
+#include "text/file_names.hpp"
 
 using namespace clray::text;
 
@@ -21,12 +21,26 @@ TEST_CASE("parts of file names: no separators, no leading dot, never empty, at m
 }
 
 TEST_CASE("different things get different stems, the same thing always the same one") {
-  const std::vector<std::vector<std::string>> things = {
-      {"delay", "a b"},    {"delay", "a-b"}, {"delay", "a_b"},    {"delay", "a", "b"},
-      {"delay", "A B"},    {"delay", "тёмный"}, {"delay", "Тёмный"}, {"delay", "чёрный"},
-      {"delay", "ÉTÉ"},    {"delay", "été"},  {"delay", "Σ"},      {"delay", "σ"},
-      {"delay", "Ł"},      {"delay", "ł"},    {"delay", std::string(300, 'x')},
-      {"delay", std::string(299, 'x') + "y"}, {"delay", "?"}, {"delay", "!"}, {"delay", "Ž"}, {"delay", "ž"}};
+  const std::vector<std::vector<std::string>> things = {{"delay", "a b"},
+                                                        {"delay", "a-b"},
+                                                        {"delay", "a_b"},
+                                                        {"delay", "a", "b"},
+                                                        {"delay", "A B"},
+                                                        {"delay", "тёмный"},
+                                                        {"delay", "Тёмный"},
+                                                        {"delay", "чёрный"},
+                                                        {"delay", "ÉTÉ"},
+                                                        {"delay", "été"},
+                                                        {"delay", "Σ"},
+                                                        {"delay", "σ"},
+                                                        {"delay", "Ł"},
+                                                        {"delay", "ł"},
+                                                        {"delay", std::string(300, 'x')},
+                                                        {"delay", std::string(299, 'x') + "y"},
+                                                        {"delay", "?"},
+                                                        {"delay", "!"},
+                                                        {"delay", "Ž"},
+                                                        {"delay", "ž"}};
   // Lower case by hand, apart from the code's fold.
   const auto lower = [](std::string s) {
     for (char& c : s) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-namespace clray::slr {
+namespace clray::ephemeris {
 
 /// One line at a time, split into fields.
 class RecordReader {
@@ -17,7 +17,8 @@ class RecordReader {
   /// Throws Error(input) where the file cannot be opened.
   explicit RecordReader(const std::string& path);
 
-  /// The next line; false at the end of the file. A blank line is an error, and so is a NUL or a line over 4096 bytes.
+  /// The next line; false at the end of the file, before which blank lines may stand. A blank line elsewhere is an
+  /// error, and so is a NUL or a line over 4096 bytes.
   bool next();
 
   const std::string& line() const { return line_; }
@@ -28,7 +29,7 @@ class RecordReader {
   /// The record's type in capitals: the first field.
   const std::string& type() const { return type_; }
 
-  /// Fails unless the record has between `low` and `high` fields, its type included.
+  /// Fails unless the record has between `low` and `high` fields, its type included; npos: without limit.
   void expect_fields(std::size_t low, std::size_t high) const;
 
   long integer(std::size_t i, long low, long high, const char* what) const;
@@ -44,6 +45,9 @@ class RecordReader {
   [[noreturn]] void fail(const std::string& what) const;
 
  private:
+  /// One line, split, be it blank.
+  bool read_line();
+
   struct Close {
     void operator()(std::FILE* file) const { std::fclose(file); }
   };
@@ -53,4 +57,4 @@ class RecordReader {
   std::vector<std::string_view> fields_;
 };
 
-}  // namespace clray::slr
+}  // namespace clray::ephemeris

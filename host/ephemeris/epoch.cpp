@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Epochs and calendar dates; see epoch.hpp.
-#include "slr/epoch.hpp"
+#include "ephemeris/epoch.hpp"
+
+#include <fmt/format.h>
 
 #include <cmath>
 #include <cstdlib>
 #include <ctime>
 
-namespace clray::slr {
+namespace clray::ephemeris {
 
 namespace {
 
@@ -24,6 +26,29 @@ Epoch normalised(Epoch epoch) {
   std::int64_t days = epoch.ps / kPicosecondsPerDay;
   if (epoch.ps % kPicosecondsPerDay < 0) --days;
   return {epoch.mjd + days, epoch.ps - days * kPicosecondsPerDay};
+}
+
+Instant instant_of(double seconds) {
+  const double whole = std::floor(seconds);
+  return later({static_cast<std::int64_t>(whole), 0}, 0,
+               static_cast<std::int64_t>(std::llround((seconds - whole) * 1e12)));
+}
+
+Instant later(const Instant& instant, std::int64_t s, std::int64_t ps) {
+  const std::int64_t sum = instant.ps + ps;
+  std::int64_t carry = sum / kPicosecondsPerSecond;
+  if (sum % kPicosecondsPerSecond < 0) --carry;
+  return {instant.s + s + carry, sum - carry * kPicosecondsPerSecond};
+}
+
+double seconds_between(const Instant& a, const Instant& b) {
+  return static_cast<double>(b.s - a.s) + static_cast<double>(b.ps - a.ps) * 1e-12;
+}
+
+Epoch epoch_of(const Epoch& zero, const Instant& time) {
+  std::int64_t days = time.s / 86400;
+  if (time.s % 86400 < 0) --days;
+  return normalised({zero.mjd + days, zero.ps + (time.s - days * 86400) * kPicosecondsPerSecond + time.ps});
 }
 
 Epoch epoch_of(std::int64_t mjd, double seconds) {
@@ -56,6 +81,11 @@ Date date_of(const Epoch& epoch) {
   return date;
 }
 
+std::string date_text(const Epoch& epoch) {
+  const Date d = date_of(epoch);
+  return fmt::format("{:04}-{:02}-{:02} {:02}:{:02}:{:02} UTC", d.year, d.month, d.day, d.hour, d.minute, d.second);
+}
+
 bool mjd_of(int year, int month, int day, std::int64_t* mjd) {
   if (year < 1858 || year > 9999 || month < 1 || month > 12 || day < 1 || day > 31) return false;
   *mjd = julian_day(year, month, day) - 2400001;
@@ -73,4 +103,4 @@ Epoch production_epoch() {
   return {kUnixEpochMjd + seconds / 86400, seconds % 86400 * kPicosecondsPerSecond};
 }
 
-}  // namespace clray::slr
+}  // namespace clray::ephemeris

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Strict reading of record files; see record_text.hpp.
-#include "slr/record_text.hpp"
+#include "ephemeris/record_text.hpp"
 
 #include <fmt/format.h>
 
@@ -12,9 +12,9 @@
 #include <limits>
 
 #include "clray/error.hpp"
-#include "slr/epoch.hpp"
+#include "ephemeris/epoch.hpp"
 
-namespace clray::slr {
+namespace clray::ephemeris {
 
 namespace {
 
@@ -30,7 +30,7 @@ RecordReader::RecordReader(const std::string& path) : path_(path), file_(std::fo
   if (!file_) throw Error(ErrorCode::input, std::string("cannot be opened: ") + std::strerror(errno), path);
 }
 
-bool RecordReader::next() {
+bool RecordReader::read_line() {
   char buffer[kLongestLine + 2];
   if (!std::fgets(buffer, sizeof buffer, file_.get())) {
     if (std::ferror(file_.get())) throw Error(ErrorCode::input, "cannot be read", path_);
@@ -51,7 +51,20 @@ bool RecordReader::next() {
     at = std::min(all.find_first_of(" \t", begin), all.size());
     fields_.push_back(all.substr(begin, at - begin));
   }
-  if (fields_.empty()) fail("an empty line");
+  return true;
+}
+
+bool RecordReader::next() {
+  std::size_t blank = 0;
+  while (true) {
+    if (!read_line()) return false;
+    if (!fields_.empty()) break;
+    if (blank == 0) blank = number_;
+  }
+  if (blank != 0) {
+    number_ = blank;
+    fail("an empty line");
+  }
   type_.clear();
   for (const char c : fields_[0]) type_ += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
   return true;
@@ -59,7 +72,9 @@ bool RecordReader::next() {
 
 void RecordReader::expect_fields(std::size_t low, std::size_t high) const {
   if (fields_.size() >= low && fields_.size() <= high) return;
-  const std::string wanted = low == high ? fmt::format("{}", low) : fmt::format("{} to {}", low, high);
+  const std::string wanted = low == high                 ? fmt::format("{}", low)
+                             : high == std::string::npos ? fmt::format("at least {}", low)
+                                                         : fmt::format("{} to {}", low, high);
   fail(fmt::format("record {} has {} fields; expected {}", type_, fields_.size(), wanted));
 }
 
@@ -123,4 +138,4 @@ void RecordReader::fail(const std::string& what) const {
   throw Error(ErrorCode::input, what, fmt::format("{}:{}", path_, number_));
 }
 
-}  // namespace clray::slr
+}  // namespace clray::ephemeris

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // CPF v2 predictions; see cpf.hpp.
-#include "slr/cpf.hpp"
+#include "ephemeris/cpf.hpp"
 
 #include <fmt/format.h>
 
@@ -9,22 +9,23 @@
 #include <glm/geometric.hpp>
 
 #include "clray/error.hpp"
-#include "clray/session.hpp"
-#include "slr/link.hpp"
-#include "slr/record_text.hpp"
+#include "ephemeris/record_text.hpp"
 
-namespace clray::slr {
+namespace clray::ephemeris {
 
 namespace {
 
 constexpr std::size_t kPoints = 10;  // of a polynomial of the 9th order
+constexpr std::size_t kNoLimit = std::string::npos;
 constexpr double kStepTolerance_s = 1e-6;
+constexpr double kLightSpeed = 299792458.0;  // m/s
 
 void read_h1(RecordReader& in, Prediction* p) {
-  in.expect_fields(11, 12);
+  in.expect_fields(3, kNoLimit);
   if (in.field(1) != "CPF" && in.field(1) != "cpf") in.fail(fmt::format("\"{}\"; expected CPF", in.field(1)));
   p->version = static_cast<int>(in.integer(2, 1, 99, "format version"));
   if (p->version != 2) in.fail(fmt::format("format version {}; expected 2", p->version));
+  in.expect_fields(11, kNoLimit);  // notes may be several words
   p->source = in.field(3);
   p->year = static_cast<int>(in.integer(4, 1950, 2100, "year"));
   p->month = static_cast<int>(in.integer(5, 1, 12, "month"));
@@ -187,16 +188,4 @@ double distance_at(const Prediction& p, const Vec3& station_m, double time_s) {
   return distance;
 }
 
-}  // namespace clray::slr
-
-namespace clray {
-
-std::string describe_prediction(const std::string& cpf_file) {
-  const slr::Prediction p = slr::read_cpf(cpf_file);
-  const slr::Date d = slr::date_of(p.first);
-  return fmt::format("{}: target {} by {}, {} positions from {:04}-{:02}-{:02} {:02}:{:02}:{:02} UTC over {} s",
-                     cpf_file, p.target, p.source, p.time_s.size(), d.year, d.month, d.day, d.hour, d.minute, d.second,
-                     p.time_s.back());
-}
-
-}  // namespace clray
+}  // namespace clray::ephemeris

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// Expected photon rates of a run's pulses, each at the range of its own time and of its own observer; and the link
+// budget of a run without a session.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "ephemeris/range.hpp"
+#include "slr/link.hpp"
+#include "slr/pulse.hpp"
+#include "slr/session.hpp"
+
+namespace clray::slr {
+
+namespace {
+
+/// Ranges of a record, at the time of its orientation. The station's light goes out from the station; who sees it back
+/// is the observer, at his own range if he is not where the station is.
+Ranges ranges_of(const Result& result, const Scene& scene, const RangeModel& model, const ResultKey& key) {
+  const double time_s =
+      key.orientation < result.orientations.size() ? result.orientations[key.orientation].time_s : 0.0;
+  const Instant time = instant_of(time_s);
+  Ranges ranges{model.range_m(time), 0.0};
+  ranges.back_m = ranges.out_m;
+  for (const Observer& o : scene.observers) {
+    if ((key.observer.empty() || o.name == key.observer) && !at_source(o, scene.source)) {
+      ranges.back_m = observer_range_m(o, &model, time);
+    }
+  }
+  return ranges;
+}
+
+std::vector<double> rates_of(const DelayResult& delay, const Station& station, double photons_per_m2) {
+  const double photons = 4.0 * kPi * photons_per_m2;
+  const Histogram bins{delay.first_bin_start_s, delay.bin_width_s, delay.bin_m2_per_sr};
+  const PulseKernel kernel = pulse_kernel(station, delay.bin_width_s);
+  const Histogram smeared = convolve(bins, kernel);
+  const long shift = std::lround((delay.first_bin_start_s - smeared.first_s) / delay.bin_width_s);
+  const double per_ns = photons / (delay.bin_width_s * 1e9);
+  std::vector<double> rates(bins.mass.size(), 0.0);
+  for (std::size_t i = 0; i < rates.size(); ++i) {
+    for (long cut = 0; cut < kernel.cuts; ++cut) {
+      const long from = (static_cast<long>(i) + shift) * kernel.cuts + cut;
+      if (from >= 0 && from < static_cast<long>(smeared.mass.size()))
+        rates[i] += smeared.mass[static_cast<std::size_t>(from)];
+    }
+    rates[i] *= per_ns;
+  }
+  return rates;
+}
+
+}  // namespace
+
+}  // namespace clray::slr
+
+namespace clray {
+
+std::vector<double> photons_per_ns(const DelayResult& delay, const Station& station, double range_m,
+                                   double wavelength_nm) {
+  return slr::rates_of(delay, station, slr::link_budget(station, wavelength_nm, range_m).photons_per_m2);
+}
+
+void expect_photons(const Scene& scene, Result* result) {
+  if (!scene.station || scene.source.kind != Source::Kind::laser) return;
+  const slr::RangeModel model(*scene.station);
+  for (DelayResult& delay : result->delay) {
+    const slr::Ranges ranges = slr::ranges_of(*result, scene, model, delay.key);
+    const slr::LinkBudget link = slr::link_budget(*scene.station, scene.source.wavelength_nm, ranges);
+    delay.photons_per_ns = slr::rates_of(delay, *scene.station, link.photons_per_m2);
+  }
+}
+
+std::string link_budget_text(const Scene& scene, const Result& result) {
+  if (!scene.station || scene.source.kind != Source::Kind::laser || result.delay.empty()) return {};
+  const DelayResult& delay = result.delay.front();
+  const slr::RangeModel model(*scene.station);
+  std::string text;
+  if (result.delay.size() > 1) {
+    text = "Link budget of " + delay.key.detector;
+    for (const std::string& name : {delay.key.observer, delay.key.variant}) text += name.empty() ? "" : ", " + name;
+    text += fmt::format(", orientation {}:\n", delay.key.orientation);
+  }
+  return text + slr::link_text(slr::link_rows(*scene.station, scene.source.wavelength_nm,
+                                              4.0 * slr::kPi * delay.intensity_m2_per_sr.value,
+                                              slr::ranges_of(result, scene, model, delay.key)));
+}
+
+}  // namespace clray
