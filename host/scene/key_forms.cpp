@@ -28,7 +28,8 @@ constexpr Range kWavelength{0.0, 1e7, false, true};
 /// A band from a filter's curve, called `name` or, if that is empty, like its file.
 Band curve_band(TomlTable& t, const std::string& key, std::string name) {
   const std::string file = t.file(key);
-  Spectrum curve = read_spectrum(file, 0.0, 1e300);
+  Spectrum curve = read_spectrum(
+      file, {{"value", "transmission", "transmittance", "response", "throughput", "efficiency"}, ""}, 0.0, 1e300);
   const bool some = std::any_of(curve.value.begin(), curve.value.end(), [](double v) { return v > 0.0; });
   if (curve.value.size() < 2 || !some) {
     throw Error(ErrorCode::input, "expected a filter's curve: at least two rows, and some light passed", file);
@@ -147,7 +148,7 @@ std::string bands_text(const Source& s) {
 }
 
 void read_source_spectrum(TomlTable& t, const std::string& key, Source* s) {
-  s->spectrum = read_spectrum(t.file(key), 0.0, 1e300);
+  s->spectrum = read_spectrum(t.file(key), {{"irradiance", "spectral_irradiance"}, "W_m2_nm", "value"}, 0.0, 1e300);
 }
 
 void check_source_spectrum(const std::string& where, const Source& s) {
@@ -238,7 +239,7 @@ std::string table_stop_text(const Motion& m) {
 // ---- station
 
 void read_ranges(TomlTable& t, const std::string& key, Station* s) {
-  s->ranges = read_pairs(t.file(key), {"time_s", "range_m"}, 1.0, 1e-3, 1e13);
+  s->ranges = read_pairs(t.file(key), {{"time", "t"}, "s"}, {{"range", "distance"}, "m"}, 1e-3, 1e13);
 }
 
 void check_ranges(const std::string& where, const Station& s) {
@@ -271,7 +272,8 @@ std::string pulse_fault(const Station& s) {
 }
 
 void read_pulse(TomlTable& t, const std::string& key, Station* s) {
-  s->pulse = read_pairs(t.file(key), {"time_ps", "power"}, 1e12, 0.0, kMostPower);
+  s->pulse = read_pairs(t.file(key), {{"time", "t"}, "ps"}, {{"power", "value"}, ""}, 0.0, kMostPower);
+  for (auto& row : s->pulse) row.first /= 1e12;
   if (const std::string fault = pulse_fault(*s); !fault.empty()) t.fail(key, fault);
 }
 

@@ -18,7 +18,11 @@ namespace {
 
 /// A spectrum whose every value the key accepts.
 Spectrum key_spectrum(const TableKey& key, const std::string& file) {
-  const Spectrum spectrum = read_spectrum(file, key.low, key.high);
+  std::vector<std::string> names{"value", key.name};
+  for (const char* word : {"reflectance", "albedo"}) {
+    if (key.meaning.find(word) != std::string::npos) names.insert(names.end(), {word, "rho"});
+  }
+  const Spectrum spectrum = read_spectrum(file, {names, ""}, key.low, key.high);
   for (const double value : spectrum.value) {
     std::string expected;
     if (!key_accepts(key, value, &expected)) {

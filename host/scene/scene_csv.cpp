@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads the CSV tables of a scene strictly: the whole field must be one finite number, the count of columns exact,
-// axes increasing. Part of reading a scene; units are those of the column names.
+// Reads the CSV tables of a scene: which columns each has, what their values may be, axes increasing. Part of reading a
+// scene; csv_table.cpp finds the columns.
 #include "scene/scene_csv.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
-#include <charconv>
 #include <cmath>
-#include <fstream>
 
 #include "clray/error.hpp"
+#include "scene/toml_reader.hpp"
 #include "shared/portable.h"
 
 namespace clray {
@@ -19,38 +17,6 @@ namespace {
 
 [[noreturn]] void fail(const std::string& file, int line, const std::string& message) {
   throw Error(ErrorCode::input, message, line > 0 ? fmt::format("{}:{}", file, line) : file);
-}
-
-std::string trimmed(const std::string& text) {
-  const std::size_t begin = text.find_first_not_of(" \t\r");
-  if (begin == std::string::npos) return {};
-  return text.substr(begin, text.find_last_not_of(" \t\r") - begin + 1);
-}
-
-std::vector<std::string> fields_of(const std::string& line) {
-  std::vector<std::string> fields;
-  for (std::size_t at = 0; at <= line.size();) {
-    const std::size_t end = std::min(line.find(',', at), line.size());
-    fields.push_back(trimmed(line.substr(at, end - at)));
-    at = end + 1;
-  }
-  return fields;
-}
-
-bool is_header(const std::vector<std::string>& fields) {
-  return std::all_of(fields.begin(), fields.end(), [](const std::string& f) {
-    return !f.empty() && (std::isalpha(static_cast<unsigned char>(f[0])) != 0) && f != "nan" && f != "inf";
-  });
-}
-
-double number_of(const std::string& file, int line, const std::string& column, const std::string& text) {
-  const char* begin = text.data() + (text.size() > 1 && text[0] == '+' && text[1] != '-' ? 1 : 0);
-  double value = 0.0;
-  const auto read = std::from_chars(begin, text.data() + text.size(), value);
-  if (read.ec != std::errc() || read.ptr != text.data() + text.size() || !std::isfinite(value)) {
-    fail(file, line, fmt::format("{}: expected a finite number, found '{}'", column, text));
-  }
-  return value;
 }
 
 void check_range(const CsvTable& t, std::size_t row, const std::string& column, double value, double low, double high) {
@@ -79,37 +45,8 @@ std::vector<double> axis_of(const CsvTable& t, std::size_t column) {
 
 }  // namespace
 
-CsvTable read_csv(const std::string& file, const std::vector<std::string>& columns) {
-  std::ifstream stream(file);
-  if (!stream) fail(file, 0, "cannot be read");
-  CsvTable t;
-  t.file = file;
-  std::string text;
-  bool begun = false;
-  for (int line = 1; std::getline(stream, text); ++line) {
-    if (line == 1 && text.compare(0, 3, "\xEF\xBB\xBF") == 0) text.erase(0, 3);
-    text = trimmed(text.substr(0, text.find('#')));
-    if (text.empty()) continue;
-    const std::vector<std::string> fields = fields_of(text);
-    if (fields.size() != columns.size()) {
-      fail(file, line,
-           fmt::format("expected {} columns ({}), found {}", columns.size(), fmt::join(columns, ","), fields.size()));
-    }
-    const bool header = !begun && is_header(fields);
-    begun = true;
-    if (header) continue;
-    std::vector<double> row;
-    for (std::size_t i = 0; i < fields.size(); ++i) row.push_back(number_of(file, line, columns[i], fields[i]));
-    t.rows.push_back(std::move(row));
-    t.lines.push_back(line);
-  }
-  if (stream.bad()) fail(file, 0, "cannot be read");
-  if (t.rows.empty()) fail(file, 0, fmt::format("holds no rows of {}", fmt::join(columns, ",")));
-  return t;
-}
-
-Spectrum read_spectrum(const std::string& file, double low, double high) {
-  const CsvTable t = read_csv(file, {"wavelength_nm", "value"});
+Spectrum read_spectrum(const std::string& file, const CsvColumn& value, double low, double high) {
+  const CsvTable t = read_csv(file, {{{"wavelength", "lambda"}, "nm"}, value});
   check_increasing(t, "wavelength_nm");
   Spectrum s;
   for (std::size_t i = 0; i < t.rows.size(); ++i) {
@@ -121,24 +58,27 @@ Spectrum read_spectrum(const std::string& file, double low, double high) {
   return s;
 }
 
-std::vector<std::pair<double, double>> read_pairs(const std::string& file, const std::vector<std::string>& columns,
-                                                  double units_per_second, double low, double high) {
-  const CsvTable t = read_csv(file, columns);
-  check_increasing(t, columns[0]);
+std::vector<std::pair<double, double>> read_pairs(const std::string& file, const CsvColumn& time,
+                                                  const CsvColumn& value, double low, double high) {
+  const CsvTable t = read_csv(file, {time, value});
+  check_increasing(t, time.shown());
   std::vector<std::pair<double, double>> pairs;
   for (std::size_t i = 0; i < t.rows.size(); ++i) {
-    check_range(t, i, columns[1], t.rows[i][1], low, high);
-    pairs.emplace_back(t.rows[i][0] / units_per_second, t.rows[i][1]);
+    check_range(t, i, time.shown(), t.rows[i][0], kTime.low, kTime.high);
+    check_range(t, i, value.shown(), t.rows[i][1], low, high);
+    pairs.emplace_back(t.rows[i][0], t.rows[i][1]);
   }
   return pairs;
 }
 
 std::vector<Attitude> read_attitudes(const std::string& file) {
-  const CsvTable t = read_csv(file, {"time_s", "qw", "qx", "qy", "qz"});
+  const CsvTable t = read_csv(file, {{{"time", "t"}, "s"}, {{"qw"}, ""}, {{"qx"}, ""}, {{"qy"}, ""}, {{"qz"}, ""}},
+                              CsvHeader::required);
   check_increasing(t, "time_s");
   std::vector<Attitude> all;
   for (std::size_t i = 0; i < t.rows.size(); ++i) {
     const std::vector<double>& r = t.rows[i];
+    check_range(t, i, "time_s", r[0], kTime.low, kTime.high);
     const double l = std::sqrt(r[1] * r[1] + r[2] * r[2] + r[3] * r[3] + r[4] * r[4]);
     if (!(std::fabs(l - 1.0) <= 1e-3)) {
       fail(file, t.lines[i], fmt::format("qw,qx,qy,qz: expected a quaternion of length 1, found length {}", l));
@@ -149,7 +89,8 @@ std::vector<Attitude> read_attitudes(const std::string& file) {
 }
 
 BrdfTable read_brdf_table(const std::string& file) {
-  const CsvTable t = read_csv(file, {"theta_i_deg", "theta_o_deg", "phi_deg", "value"});
+  const CsvTable t =
+      read_csv(file, {{{"theta_i"}, "deg"}, {{"theta_o"}, "deg"}, {{"phi"}, "deg"}, {{"value", "brdf"}, ""}});
   BrdfTable b;
   for (std::size_t i = 0; i < t.rows.size(); ++i) {
     check_range(t, i, "theta_i_deg", t.rows[i][0], 0.0, 90.0);

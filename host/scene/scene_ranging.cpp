@@ -123,8 +123,8 @@ std::string ranging_text(const Scene& scene) {
   const RangeModel ranges(*scene.station);
   if (ranges.fixed()) return "";
   const auto [start, stop] = span_of(scene);
-  std::string text =
-      fmt::format("{:.6g} m at the motion's start, {:.6g} m at its end", ranges.range_m(start), ranges.range_m(stop));
+  std::string text = fmt::format("{:.6g} m", ranges.range_m(start));
+  if (scene.motion) text += fmt::format(" at the motion's start, {:.6g} m at its end", ranges.range_m(stop));
   const ephemeris::Prediction* p = ranges.prediction();
   if (!p) return text;
   const double degrees = 180.0 / CLRAY_PI;

@@ -97,7 +97,7 @@ TEST_CASE("keys: the ends of a range are taken or refused as the row says, in a 
 
 TEST_CASE("keys: a misspelt key is told with the right one, a key of another way with its way") {
   const SceneFolder f;
-  f.write("att.csv", "0,1,0,0,0\n10,1,0,0,0\n");
+  f.write("att.csv", "time_s,qw,qx,qy,qz\n0,1,0,0,0\n10,1,0,0,0\n");
   for (const std::string& section : key_sections()) {
     for (const KeyRow& row : key_rows(section)) {
       if (row.key.name.size() < 4) continue;

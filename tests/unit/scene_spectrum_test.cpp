@@ -34,7 +34,7 @@ Source sun() {
 
 std::string complaint(const std::string& file) {
   try {
-    read_spectrum(file, 0.0, 1.0);
+    read_spectrum(file, {{"value"}, ""}, 0.0, 1.0);
   } catch (const Error& e) {
     return e.what();
   }
@@ -142,7 +142,7 @@ TEST_CASE("spectrum: CSV tables are read strictly") {
   CHECK(said("400,nan\n") == ":1: value: expected a finite number, found 'nan'");
   CHECK(said("400,1e400\n") == ":1: value: expected a finite number, found '1e400'");
   CHECK(said("400,\n") == ":1: value: expected a finite number, found ''");
-  CHECK(said("a,b\nc,d\n") == ":2: wavelength_nm: expected a finite number, found 'c'");
+  CHECK(said("wavelength_nm,value\nc,d\n") == ":2: wavelength_nm: expected a finite number, found 'c'");
   CHECK(said("-400,0.1\n") == ":1: wavelength_nm: expected a number in [0.001,1000000000], found -400");
   CHECK(said("# nothing\n") == ": holds no rows of wavelength_nm,value");
 }
@@ -154,8 +154,8 @@ TEST_CASE("spectrum: attitude and BRDF tables") {
   REQUIRE(a.size() == 2);
   CHECK(a[1].time_s == 2.0);
   CHECK(a[1].body_to_space.x == doctest::Approx(0.6).epsilon(1e-8));
-  CHECK_THROWS_WITH_AS(read_attitudes(folder.write("b.csv", "0,1,1,0,0\n")),
-                       doctest::Contains("b.csv:1: qw,qx,qy,qz: expected a quaternion of length 1"), Error);
+  CHECK_THROWS_WITH_AS(read_attitudes(folder.write("b.csv", "time_s,qw,qx,qy,qz\n0,1,1,0,0\n")),
+                       doctest::Contains("b.csv:2: qw,qx,qy,qz: expected a quaternion of length 1"), Error);
   const BrdfTable b = read_brdf_table(folder.write("f.csv",
                                                    "theta_i_deg,theta_o_deg,phi_deg,value\n0,0,0,1\n90,0,0,2\n0,90,0,"
                                                    "3\n90,90,0,4\n0,0,180,5\n90,0,180,6\n0,90,180,7\n90,90,180,8\n"));

@@ -202,7 +202,7 @@ TEST_CASE("toml: keys that exclude or need each other") {
         "s.toml:6:10: motion.stop_s: expected a number in [20,inf), found 10");
   CHECK(f.complaint(kBall + "[motion]\naxis = [0, 1, 0]\nperiod_s = 1\nstop_s = 1e9\nstep_deg = 1\n") ==
         "s.toml:2:1: motion: the motion needs between 1 and 10000000 steps");
-  f.write("att.csv", "0,1,0,0,0\n10,1,0,0,0\n");
+  f.write("att.csv", "time_s,qw,qx,qy,qz\n0,1,0,0,0\n10,1,0,0,0\n");
   CHECK(f.complaint(kBall + "[motion]\nattitudes = \"att.csv\"\nperiod_s = 1\n") ==
         "s.toml:4:12: motion.period_s: belongs to a spin; this is a table");
   CHECK(f.complaint(kBall + "[motion]\nattitudes = \"att.csv\"\nstop_s = 11\n") ==
