@@ -45,6 +45,7 @@ template <class Section>
 struct Key : KeyRow {
   std::function<void(TomlTable&, Section*)> read;                 ///< the key, which is there
   std::function<void(const std::string&, const Section&)> check;  ///< throws Error(input)
+  std::function<double(const Section&)> number;                   ///< in the key's unit; NaN where it is no number
   std::function<std::string(const Section&)> text;                ///< for a person; empty where nothing is given
 };
 

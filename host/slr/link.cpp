@@ -4,9 +4,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "clray/error.hpp"
+#include "clray/keys.hpp"
 #include "scene/keys.hpp"
 #include "shared/elementary.h"
 #include "text/columns.hpp"
@@ -15,12 +17,22 @@ namespace clray::slr {
 
 namespace {
 
-/// A key's row, with what keys.def says of it.
-LinkRow key_row(const std::string& section, const std::string& key, double value) {
-  for (const KeyRow& row : key_rows(section)) {
-    if (row.key.name == key) return {key, value, row.unit, row.fallback, row.values, row.key.meaning};
+/// A key's row: its value, and what keys.def says of it.
+template <class Section>
+LinkRow key_row(const Section& section, const std::string& name) {
+  for (const Key<Section>& k : keys<Section>()) {
+    if (k.key.name == name) return {name, k.number(section), k.unit, k.fallback, k.values, k.key.meaning};
   }
-  throw Error(ErrorCode::bug, "there is no such key", section + "." + key);
+  throw Error(ErrorCode::bug, "there is no such key", name);
+}
+
+/// The station's numbers that are not among `rows` yet, but its epoch, on which no photon depends.
+void add_other_keys(const Station& station, std::vector<LinkRow>* rows) {
+  for (const Key<Station>& k : keys<Station>()) {
+    const bool there =
+        std::any_of(rows->begin(), rows->end(), [&](const LinkRow& row) { return row.key == k.key.name; });
+    if (k.kind == KeyKind::number && !there && k.key.name != "start_mjd") rows->push_back(key_row(station, k.key.name));
+  }
 }
 
 }  // namespace
@@ -39,8 +51,8 @@ LinkBudget link_budget(const Station& s, double wavelength_nm, double range_m) {
 LinkBudget link_budget(const Station& s, double wavelength_nm, const Ranges& ranges) {
   check_station(s, wavelength_nm);
   for (const double range_m : {ranges.out_m, ranges.back_m}) {
-    if (range_m >= 1e-3 && range_m <= 1e13) continue;
-    throw Error(ErrorCode::input, fmt::format("is {} m; expected a number in [1e-3,1e13]", range_m), "station.range_m");
+    const std::string fault = key_fault("station", "range_m", range_m);
+    if (!fault.empty()) throw Error(ErrorCode::input, fmt::format("{}, found {}", fault, range_m), "station.range_m");
   }
   LinkBudget b{};
   b.eta_q = s.eta_q;
@@ -62,40 +74,43 @@ LinkBudget link_budget(const Station& s, double wavelength_nm, const Ranges& ran
 std::vector<LinkRow> link_rows(const Station& s, double wavelength_nm, double cross_section_m2, const Ranges& ranges) {
   const LinkBudget b = link_budget(s, wavelength_nm, ranges);
   const bool apart = ranges.back_m != ranges.out_m;
-  const auto key = [](const char* name, double value) { return key_row("station", name, value); };
+  Source laser;
+  laser.wavelength_nm = wavelength_nm;
+  Station there = s;
+  there.range_m = ranges.out_m;
+  Observer observer;
+  observer.range_m = ranges.back_m;
+  const auto key = [&](const char* name) { return key_row(there, name); };
   const auto factor = [](const char* name, double value, const char* unit, const char* meaning) {
     return LinkRow{std::string("  ") + name, value, unit, "", "", meaning};
   };
-  std::vector<LinkRow> rows{key_row("source", "wavelength_nm", wavelength_nm),
-                            key("pulse_energy_J", s.pulse_energy_J),
+  std::vector<LinkRow> rows{key_row(laser, "wavelength_nm"),
+                            key("pulse_energy_J"),
                             factor("sent", b.photons_sent, "", "photons per pulse, E lambda/(h c)"),
-                            key("divergence_urad", s.divergence_rad * 1e6),
-                            key("pointing_urad", s.pointing_rad * 1e6),
+                            key("divergence_urad"),
+                            key("pointing_urad"),
                             factor("gain", b.gain, "", "of the transmitter, 8/theta^2 exp(-2 (pointing/theta)^2)"),
-                            key("range_m", ranges.out_m)};
+                            key("range_m")};
   if (apart) {
-    rows.push_back(key_row("observer", "range_m", ranges.back_m));
+    rows.push_back(key_row(observer, "range_m"));
     rows.back().key = "observer_range_m";
   }
   const std::vector<LinkRow> rest{
       factor("spread", b.spread_per_m4, "1/m^4", apart ? "1/(4 pi R1^2 4 pi R2^2)" : "(4 pi R^2)^-2"),
-      key("aperture_m", s.aperture_m),
+      key("aperture_m"),
       factor("area", b.receiver_area_m2, "m^2", "of the receiver"),
-      key("eta_q", s.eta_q),
-      key("eta_t", s.eta_t),
-      key("eta_r", s.eta_r),
-      key("T_a", s.T_a),
-      key("T_c", s.T_c),
+      key("eta_q"),
+      key("eta_t"),
+      key("eta_r"),
+      key("T_a"),
+      key("T_c"),
       factor("cross-section", cross_section_m2, "m^2", "of the body, 4 pi A"),
-      factor("received", b.photons_per_m2 * cross_section_m2, "", "photoelectrons per pulse"),
-      key("rate_Hz", s.rate_Hz),
-      key("pulse_fwhm_ps", s.pulse.empty() ? s.pulse_fwhm_s * 1e12 : std::nan("")),
-      key("noise_per_ns", s.noise_per_ns),
-      key("dark_per_ns", s.dark_per_ns),
-      key("gate_ns", s.gate_s * 1e9),
-      key("jitter_fwhm_ps", s.jitter_fwhm_s * 1e12),
-      key("dead_time_ns", s.dead_time_s * 1e9)};
+      factor("received", b.photons_per_m2 * cross_section_m2, "", "photoelectrons per pulse")};
   rows.insert(rows.end(), rest.begin(), rest.end());
+  add_other_keys(there, &rows);
+  for (LinkRow& row : rows) {
+    if (row.key == "pulse_fwhm_ps" && !s.pulse.empty()) row.value = std::nan("");
+  }
   return rows;
 }
 

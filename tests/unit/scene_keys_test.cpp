@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "clray/keys.hpp"
+#include "scene/key_member.hpp"
 #include "scene/keys.hpp"
 #include "unit/scene_files.hpp"
 
@@ -191,6 +192,51 @@ TEST_CASE("keys: defaults are what the members start with") {
   CHECK(fallback("source", "blackbody_K") == "5772");
   CHECK(fallback("source", "direction") == "[0, 0, 1]");
   CHECK(fallback("delay", "bins") == "512");
+}
+
+TEST_CASE("keys: malformed rows are bugs of clray") {
+  const auto bug_of = [](const RowTexts& texts, auto type) {
+    try {
+      KeyRow row = parse_texts(texts);
+      set_kind<decltype(type)>(texts, &row);
+    } catch (const Error& e) {
+      CHECK(e.code() == ErrorCode::bug);
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  const std::string bug = "toy.lag_ns: malformed row of keys.def: ";
+  CHECK(bug_of({"toy", "lag_s", "lag_ns", "[0,1]", "ns", "", "lag"}, 0.0) == "");
+  CHECK(bug_of({"toy", "lag_s", "lag_ns", "[0,1]", "ns", "", ""}, 0.0) == bug + "needs a meaning");
+  CHECK(bug_of({"toy", "lag_s", "lag_ns", "", "ns", "", "lag"}, 0.0) == bug + "needs values");
+  CHECK(bug_of({"toy", "lag_s", "lag_ns", "[0,1]", "km", "", "lag"}, 0.0) ==
+        bug + "no rule leads from 'lag_ns' to 'lag_s'");
+  CHECK(bug_of({"toy", "lag_rad", "lag_ns", "[0,1]", "ns", "", "lag"}, 0.0) ==
+        bug + "no rule leads from 'lag_ns' to 'lag_rad'");
+  CHECK(bug_of({"toy", "lag_s", "lag_ns", "[1,0]", "ns", "", "lag"}, 0.0) != "");
+  CHECK(bug_of({"toy", "lag_s", "lag_ns", "[0..4]", "ns", "", "lag"}, 0.0) ==
+        bug + "range '[0..4]' does not fit the member's type");
+  CHECK(bug_of({"toy", "lag_s", "lag_ns", "[0,4]", "ns", "", "lag"}, 0) ==
+        bug + "range '[0,4]' does not fit the member's type");
+  CHECK(bug_of({"toy", "lag_s", "lag_ns", "a|b", "ns", "", "lag"}, 0.0) == bug + "words need an enum or a bool");
+  CHECK(bug_of({"toy", "lag_s", "lag_ns", "vector", "", "", "lag"}, std::string()) ==
+        bug + "a text can only be a name");
+  CHECK(bug_of({"toy", "lag_s", "lag_ns", "[0,1]", "", "", "lag"}, Vec3()) == bug + "expected direction or vector");
+}
+
+TEST_CASE("keys: a key in its member's own unit is left alone, others become s and rad and back") {
+  const auto row = [](const char* member, const char* name, const char* unit) {
+    return parse_texts({"toy", member, name, "[0,1]", unit, "", "m"});
+  };
+  CHECK(to_member(row("turn_deg", "turn_deg", "deg"), 90.0) == 90.0);
+  CHECK(to_key(row("turn_deg", "turn_deg", "deg"), 90.0) == 90.0);
+  CHECK(to_member(row("turn_rad", "turn_deg", "deg"), 180.0) == 3.14159265358979323846);
+  CHECK(to_key(row("turn_rad", "turn_deg", "deg"), 3.14159265358979323846) == 180.0);
+  CHECK(to_member(row("a_rad", "a_mrad", "mrad"), 1.0) == 1e-3);
+  CHECK(to_member(row("a_rad", "a_urad", "urad"), 1.0) == 1e-6);
+  CHECK(to_member(row("a_s", "a_ns", "ns"), 1.0) == 1e-9);
+  CHECK(to_member(row("a_s", "a_ps", "ps"), 1.0) == 1e-12);
+  CHECK(to_key(row("a_s", "a_ps", "ps"), 1e-12) == 1.0);
 }
 
 TEST_CASE("keys: listings and faults by name") {

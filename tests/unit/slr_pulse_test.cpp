@@ -6,6 +6,7 @@
 
 #include "clray/error.hpp"
 #include "clray/session.hpp"
+#include "scene/keys.hpp"
 #include "slr/link.hpp"
 #include "slr/pulse.hpp"
 
@@ -179,6 +180,11 @@ TEST_CASE("the table names every factor with unit, default and range") {
     CAPTURE(key);
     CHECK(table.find(key) != std::string::npos);
   }
+  for (const KeyRow& row : key_rows("station")) {
+    CAPTURE(row.key.name);
+    if (row.kind == KeyKind::number && row.key.name != "start_mjd")
+      CHECK(table.find(row.key.name + " ") != std::string::npos);
+  }
   CHECK(table.find("8.52482") != std::string::npos);  // 2.5 m^2 times 3.409927 photons per m^2
 }
 
@@ -191,9 +197,9 @@ TEST_CASE("stations that make no sense are refused by key") {
   refused("station.divergence_rad: expected a number in [1e-9,4e6] urad, found 0",
           [](Station& s) { s.divergence_rad = 0.0; });
   refused(
-      "station.range_m: is -1", [](Station&) {}, -1.0);
+      "station.range_m: expected a number in [1e-3,1e13], found -1", [](Station&) {}, -1.0);
   refused(
-      "station.range_m: is nan", [](Station&) {}, std::nan(""));
+      "station.range_m: expected a number in [1e-3,1e13], found nan", [](Station&) {}, std::nan(""));
   refused(
       "source.wavelength_nm: expected a number in (0,1e7], found 0", [](Station&) {}, 1e6, 0.0);
   refused("station.eta_q: expected a number in [0,1], found 1.5", [](Station& s) { s.eta_q = 1.5; });
