@@ -3,6 +3,7 @@
 // true error of a result is measured.
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
@@ -105,9 +106,11 @@ double wanted_total(const Total& total, bool first, const Reference& reference) 
 }  // namespace
 
 Reference load_reference(const std::string& file) {
+  std::error_code error;
+  const bool is_folder = std::filesystem::is_directory(file, error);
   std::ifstream in(file, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
-  if (!in || in.bad()) fail(file, 0, "cannot be read; expected a summary.json or a delay.csv");
+  const std::string text = is_folder ? "" : std::string{std::istreambuf_iterator<char>(in), {}};
+  if (is_folder || !in || in.bad()) fail(file, 0, "cannot be read; expected a summary.json or a delay.csv");
   const auto first = text.find_first_not_of(" \t\r\n");
   if (first == std::string::npos) fail(file, 0, "is empty; expected a summary.json or a delay.csv");
   return text[first] == '{' ? from_summary(file, text) : from_table(file, text);

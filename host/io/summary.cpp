@@ -296,7 +296,8 @@ void write_summary(Writer& writer, const std::vector<MoreFiles>& more) {
   for (const auto& part : more) {
     if (part.summary_key.empty()) continue;
     Json entry = Json::parse(part.summary_json, nullptr, false);
-    if (entry.is_discarded()) throw Error(ErrorCode::bug, "is not JSON: " + part.summary_json, part.summary_key);
+    if (entry.is_discarded())
+      throw Error(ErrorCode::usage, "summary_json is not JSON", "MoreFiles." + part.summary_key);
     summary[part.summary_key] = std::move(entry);
   }
   summary["orientations"] = orientations_of(writer);

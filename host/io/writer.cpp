@@ -81,6 +81,8 @@ namespace clray {
 
 std::vector<std::string> write_result(const Result& result, const Scene& scene, const std::string& folder,
                                       const WriteOptions& options) {
+  check_scene(scene);
+  check_result(result, scene);
   io::OutputFolder place(folder);
   Reference reference;
   if (!options.reference_file.empty()) reference = load_reference(options.reference_file);

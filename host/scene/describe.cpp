@@ -139,6 +139,7 @@ std::string motion_text(const Motion& m) {
 }  // namespace
 
 std::string describe_scene(const Scene& scene) {
+  check_scene(scene);
   Columns lines;
   if (scene.reference_point != Vec3(0.0)) lines.add({"reference", vector_text(scene.reference_point) + " m"});
   lines.add({"source", key_text(scene.source)});

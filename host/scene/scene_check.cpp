@@ -15,6 +15,7 @@
 #include "scene/spectrum.hpp"
 #include "scene/tables.hpp"
 #include "scene/value_checks.hpp"
+#include "shared/portable.h"
 
 namespace clray {
 namespace {
@@ -49,11 +50,16 @@ const TableRow& row_of(const std::string& where, const std::string& kind, const 
 
 void check_table(const std::string& where, const BrdfTable& t) {
   for (const std::vector<double>* axis : {&t.theta_i_rad, &t.theta_o_rad, &t.phi_rad}) {
+    const double most = (axis == &t.phi_rad ? CLRAY_PI : 0.5 * CLRAY_PI) * (1.0 + 1e-12);
+    for (const double angle : *axis) check_number(where, angle, {0.0, most, true, true});
     if (axis->empty() || !std::is_sorted(axis->begin(), axis->end(), std::less_equal<double>())) {
       fail(where, "expected increasing angles");
     }
   }
-  if (t.value.size() != t.theta_i_rad.size() * t.theta_o_rad.size() * t.phi_rad.size()) {
+  // In steps: the product of three sizes may exceed what a size holds.
+  const std::size_t rows = t.value.size() / t.phi_rad.size();
+  if (t.value.size() % t.phi_rad.size() != 0 || rows % t.theta_o_rad.size() != 0 ||
+      rows / t.theta_o_rad.size() != t.theta_i_rad.size()) {
     fail(where, "expected one value per combination of angles");
   }
   for (const double value : t.value) check_number(where, value, kNotNegative);
@@ -68,46 +74,57 @@ void check_material(const std::string& where, const Material& m) {
     if (key == nullptr) fail(where, fmt::format("unknown key '{}' of '{}'", name, row.name));
     check_spectrum(where + "." + name, spectrum, key);
   }
+  if (!row.file && m.table) fail(where + ".table", "the model '" + row.name + "' has none");
   if (row.file) {
     if (!m.table) fail(where + ".table", fmt::format("missing; the model '{}' needs a table", row.name));
     check_table(where + ".table", *m.table);
   }
 }
 
-void check_component(const std::string& where, const Scene& scene, const Component& c) {
-  const TableRow& row = row_of(where + ".shape", "shape", c.shape);
-  check_row(where, row, c.parameters);
-  const std::string fault = shape_fault(c);
-  if (!fault.empty()) fail(where, fault);
-  std::size_t slots = 1;
-  if (row.file) {
-    if (!c.mesh || c.mesh->triangles.empty()) fail(where + ".mesh", "missing; expected a mesh with triangles");
-    if (c.mesh->triangle_slot.size() != c.mesh->triangles.size())
-      fail(where + ".mesh", "expected one slot per triangle");
-    slots = c.mesh->material_slots.size();
-    for (const std::uint32_t slot : c.mesh->triangle_slot) {
-      if (slot >= slots) fail(where + ".mesh", "a triangle's slot is beyond material_slots");
+void check_mesh(const std::string& where, const Mesh* mesh, double scale) {
+  if (mesh == nullptr || mesh->triangles.empty()) fail(where, "missing; expected a mesh with triangles");
+  if (mesh->triangle_slot.size() != mesh->triangles.size()) fail(where, "expected one slot per triangle");
+  for (const std::uint32_t slot : mesh->triangle_slot) {
+    if (slot >= mesh->material_slots.size()) fail(where, "a triangle's slot is beyond material_slots");
+  }
+  for (const auto& t : mesh->triangles) {
+    for (const std::uint32_t v : t) {
+      if (v >= mesh->vertices.size()) fail(where, "a triangle's vertex is beyond vertices");
     }
-    for (const auto& t : c.mesh->triangles) {
-      for (const std::uint32_t v : t) {
-        if (v >= c.mesh->vertices.size()) fail(where + ".mesh", "a triangle's vertex is beyond vertices");
+  }
+  for (std::size_t i = 0; i < mesh->vertices.size(); ++i) {
+    const Vec3& v = mesh->vertices[i];
+    for (int k = 0; k < 3; ++k) {
+      if (!(std::fabs(v[k]) * scale <= kLongest_m) || !(std::fabs(v[k]) <= kLongest_m)) {
+        fail(fmt::format("{}.vertices[{}]", where, i),
+             fmt::format("expected at most {:g} m, found {} (times a scale of {})", kLongest_m, v[k], scale));
       }
     }
   }
+}
+
+void check_component(const std::string& where, const Scene& scene, const Component& c) {
+  const TableRow& row = row_of(where + ".shape", "shape", c.shape);
+  check_row(where, row, c.parameters);
+  check_number(where + ".transform.scale", c.transform.scale, kPositive);
+  const std::string fault = shape_fault(c);
+  if (!fault.empty()) fail(where, fault);
+  if (!row.file && c.mesh) fail(where + ".mesh", "the shape '" + row.name + "' has none");
+  if (row.file) check_mesh(where + ".mesh", c.mesh.get(), c.transform.scale);
+  const std::size_t slots = row.file ? c.mesh->material_slots.size() : 1;
   if (c.materials.size() != slots) {
     fail(where + ".materials", fmt::format("expected {} of them, found {}", slots, c.materials.size()));
   }
   for (const std::uint32_t m : c.materials) {
     if (m >= scene.materials.size()) fail(where + ".materials", fmt::format("there is no material {}", m));
   }
-  check_vector(where + ".transform.translate", c.transform.translate);
+  check_place(where + ".transform.translate", c.transform.translate);
   check_unit(where + ".transform.axis", c.transform.axis);
-  check_number(where + ".transform.angle_rad", c.transform.angle_rad, kAny);
-  check_number(where + ".transform.scale", c.transform.scale, kPositive);
+  check_angle(where + ".transform.angle_rad", c.transform.angle_rad);
   if (!c.hinge) return;
   check_unit(where + ".hinge.axis", c.hinge->axis);
-  check_vector(where + ".hinge.point", c.hinge->point);
-  check_number(where + ".hinge.angle_rad", c.hinge->angle_rad, kAny);
+  check_place(where + ".hinge.point", c.hinge->point);
+  check_angle(where + ".hinge.angle_rad", c.hinge->angle_rad);
 }
 
 void check_source(const Source& s) {
@@ -127,12 +144,16 @@ void check_trace(const TraceOptions& o) {
   check_number("trace.work_group_size", o.work_group_size, {1.0, 1024.0, true, true});
 }
 
-/// Names that key results must differ, and one alone may be empty.
+/// Names that key results must differ, and one alone may be empty. A detector without a name has that of its kind.
 template <typename List>
 void check_names(const std::string& where, const List& list) {
   std::set<std::string> names;
   for (const auto& each : list) {
-    if (!names.insert(each.name).second) fail(where, "a second one of the name \"" + each.name + "\"");
+    std::string name = each.name;
+    if constexpr (std::is_same_v<List, std::vector<DetectorSpec>>) {
+      if (name.empty()) name = each.kind;
+    }
+    if (!names.insert(name).second) fail(where, "a second one of the name \"" + name + "\"");
   }
 }
 
@@ -145,6 +166,12 @@ std::string shape_fault(const Component& c) {
   const std::vector<double> values = row_values(row, c.parameters);
   double radius = 0.0, inner = -1.0;
   for (std::size_t i = 0; i < values.size(); ++i) {
+    const double length = values[i] * c.transform.scale;
+    const bool zero = values[i] == 0.0;  // where a key's range allows it: a cone's tip
+    if (!row.keys[i].is_switch && !zero && !(length >= kShortest_m && length <= kLongest_m)) {
+      return fmt::format("{}: expected a length from {:g} to {:g} m, found {}", row.keys[i].name, kShortest_m,
+                         kLongest_m, length);
+    }
     if (row.keys[i].name == "radius") radius = values[i];
     if (row.keys[i].name == "inner_radius") inner = values[i];
   }
@@ -184,12 +211,13 @@ void check_scene(const Scene& scene) {
   if (scene.components.empty()) fail("components", "missing; expected at least one");
   if (scene.observers.empty()) fail("observers", "missing; expected at least one");
   if (scene.detectors.empty()) fail("detectors", "missing; expected at least one");
-  check_vector("reference_point", scene.reference_point);
+  check_place("reference_point", scene.reference_point);
   check_names("materials", scene.materials);
   check_names("components", scene.components);
   check_names("observers", scene.observers);
   check_names("detectors", scene.detectors);
   check_names("variants", scene.variants);
+  check_names("source.bands", scene.source.bands);
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {
     check_material(fmt::format("materials[{}]", i), scene.materials[i]);
   }

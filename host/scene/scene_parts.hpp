@@ -23,7 +23,7 @@ void read_station(TomlTable& root, Scene* scene);
 void read_detectors(TomlTable& root, Scene* scene);
 void read_trace(TomlTable& root, Scene* scene);
 
-/// What is wrong with a shape's parameters taken together, or "".
+/// What is wrong with a shape's parameters (each a length, or a switch) taken together, or "".
 std::string shape_fault(const Component& component);
 
 /// What is wrong with a detector's parameters taken together, or "".

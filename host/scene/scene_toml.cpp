@@ -13,6 +13,7 @@
 #include "scene/material.hpp"
 #include "scene/scene_parts.hpp"
 #include "scene/tables.hpp"
+#include "scene/value_checks.hpp"
 #include "shared/portable.h"
 
 namespace clray {
@@ -71,11 +72,21 @@ std::string known_material(TomlTable& t, const std::string& key, const Scene& sc
   return name;
 }
 
+constexpr Range kAngle_deg{-kLargestAngle_deg, kLargestAngle_deg, true, true};
+
+/// A place within the limits of a scene.
+Vec3 read_place(TomlTable& t, const std::string& key, const Vec3& fallback) {
+  const Vec3 place = t.vector(key, fallback);
+  const std::string fault = place_fault(place);
+  if (!fault.empty()) t.fail(key, fault);
+  return place;
+}
+
 Transform read_transform(TomlTable& t) {
   Transform r;
-  r.translate = t.vector("translate", r.translate);
+  r.translate = read_place(t, "translate", r.translate);
   r.axis = t.direction("axis", r.axis);
-  r.angle_rad = radians(t.number("angle_deg", kAny, 0.0));
+  r.angle_rad = radians(t.number("angle_deg", kAngle_deg, 0.0));
   r.scale = t.number("scale", kPositive, 1.0);
   t.finish();
   return r;
@@ -84,8 +95,8 @@ Transform read_transform(TomlTable& t) {
 Hinge read_hinge(TomlTable& t) {
   Hinge h;
   h.axis = t.direction("axis");
-  h.point = t.vector("point", h.point);
-  h.angle_rad = radians(t.number("angle_deg", kAny, 0.0));
+  h.point = read_place(t, "point", h.point);
+  h.angle_rad = radians(t.number("angle_deg", kAngle_deg, 0.0));
   const std::string follow = t.choice("follow", {"none", "source", "observer"}, "none");
   h.follow = follow == "source"     ? Hinge::Follow::source
              : follow == "observer" ? Hinge::Follow::observer
@@ -234,7 +245,7 @@ Scene read_scene_file(const std::string& path, const SceneOptions& options) {
   scene.path = path;
   scene.name = fs::path(path).stem().string();
   const double unit_m = length_unit(root);
-  scene.reference_point = root.vector("reference_point", scene.reference_point);
+  scene.reference_point = read_place(root, "reference_point", scene.reference_point);
   root.finish();
   read_materials(root, &scene);
   read_components(root, options.length_unit_m > 0.0 ? options.length_unit_m : unit_m, &scene);

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "clray/error.hpp"
+#include "shared/portable.h"
 
 namespace clray {
 namespace {
@@ -29,6 +30,13 @@ std::string vector_fault(const Vec3& v) {
   return finite ? "" : "expected three finite numbers";
 }
 
+std::string place_fault(const Vec3& v) {
+  const std::string fault = vector_fault(v);
+  if (!fault.empty()) return fault;
+  const double most = std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
+  return most <= kLongest_m ? "" : fmt::format("expected at most {:g} m, found {:g}", kLongest_m, most);
+}
+
 std::string unit_fault(const Vec3& v) {
   const std::string fault = vector_fault(v);
   if (!fault.empty()) return fault;
@@ -47,6 +55,15 @@ void check_number(const std::string& where, double value, const Range& r) {
 
 void check_vector(const std::string& where, const Vec3& v) {
   throw_fault(where, vector_fault(v));
+}
+
+void check_place(const std::string& where, const Vec3& v) {
+  throw_fault(where, place_fault(v));
+}
+
+void check_angle(const std::string& where, double angle_rad) {
+  const double most = kLargestAngle_deg / 180.0 * CLRAY_PI * (1.0 + 1e-12);
+  check_number(where, angle_rad, {-most, most, true, true});
 }
 
 void check_unit(const std::string& where, const Vec3& v) {

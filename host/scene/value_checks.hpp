@@ -20,12 +20,22 @@ constexpr const char* kNameExpected = "expected a name without slashes and contr
 /// Three finite numbers.
 std::string vector_fault(const Vec3& v);
 
+/// Lengths of a scene: squares and products of a few of them stay finite and above zero in double precision.
+constexpr double kLongest_m = 1e15, kShortest_m = 1e-15;
+/// Angles of transforms and hinges: whole turns beyond it would cost digits.
+constexpr double kLargestAngle_deg = 1e6;
+
+/// Three coordinates of at most kLongest_m.
+std::string place_fault(const Vec3& v);
+
 /// A vector of length 1.
 std::string unit_fault(const Vec3& v);
 
 void check_number(const std::string& where, double value, const Range& range);
 void check_vector(const std::string& where, const Vec3& v);
 void check_unit(const std::string& where, const Vec3& v);
+void check_place(const std::string& where, const Vec3& v);
+void check_angle(const std::string& where, double angle_rad);
 
 /// One value per wavelength, wavelengths positive and increasing; values that `key` accepts or, without one, that are
 /// not negative.

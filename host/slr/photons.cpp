@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "clray/error.hpp"
 #include "ephemeris/range.hpp"
 #include "slr/link.hpp"
 #include "slr/pulse.hpp"
@@ -57,10 +58,16 @@ namespace clray {
 
 std::vector<double> photons_per_ns(const DelayResult& delay, const Station& station, double range_m,
                                    double wavelength_nm) {
+  if (!(delay.bin_width_s > 0.0) || !std::isfinite(delay.bin_width_s) || !std::isfinite(delay.first_bin_start_s)) {
+    throw Error(ErrorCode::usage, "expected bins of finite place and positive width", "delay");
+  }
   return slr::rates_of(delay, station, slr::link_budget(station, wavelength_nm, range_m).photons_per_m2);
 }
 
 void expect_photons(const Scene& scene, Result* result) {
+  if (result == nullptr) throw Error(ErrorCode::usage, "expected a result, found none", "result");
+  check_scene(scene);
+  check_result(*result, scene);
   if (!scene.station || scene.source.kind != Source::Kind::laser) return;
   const slr::RangeModel model(*scene.station);
   for (DelayResult& delay : result->delay) {
@@ -71,6 +78,8 @@ void expect_photons(const Scene& scene, Result* result) {
 }
 
 std::string link_budget_text(const Scene& scene, const Result& result) {
+  check_scene(scene);
+  check_result(result, scene);
   if (!scene.station || scene.source.kind != Source::Kind::laser || result.delay.empty()) return {};
   const DelayResult& delay = result.delay.front();
   const slr::RangeModel model(*scene.station);

@@ -256,12 +256,16 @@ bool has_session(const Scene& scene) {
 
 SessionSummary write_session(const Result& result, const Scene& scene, const std::string& folder,
                              const SessionOptions& options) {
+  check_scene(scene);
+  check_result(result, scene);
   slr::Session session(result, scene, options);
   return slr::write_files(session, result, scene, folder, options);
 }
 
 MoreFiles session_files(const Result& result, const Scene& scene, const std::string& folder,
                         const SessionOptions& options) {
+  check_scene(scene);
+  check_result(result, scene);
   MoreFiles files;
   if (!has_session(scene) || result.delay.empty()) return files;
   const std::vector<ResultKey> keys = slr::session_keys(result, scene);

@@ -186,8 +186,12 @@ struct WriteOptions {
   std::vector<std::function<MoreFiles(const std::string& folder)>> more;
 };
 
+/// Checks that the parts of a result fit each other and the scene (sizes, orientations), as those of trace() do.
+/// What writes results calls it. Throws Error(usage) with the member's path.
+void check_result(const Result& result, const Scene& scene);
+
 /// Writes summary.json, tables and pictures into `folder`, which appears (or is replaced) only whole.
-/// Returns the file names written. Throws Error(output).
+/// Returns the file names written. Throws Error(output); Error(input, usage) for a scene or result that cannot be.
 std::vector<std::string> write_result(const Result& result, const Scene& scene, const std::string& folder,
                                       const WriteOptions& options = {});
 

@@ -218,7 +218,8 @@ std::shared_ptr<const Mesh> load_mesh(const std::string& path, double length_uni
 /// Checks a scene built by hand as load_scene() checks one from a file. Throws Error(input).
 void check_scene(const Scene& scene);
 
-/// What clray understood of a scene, for a person: components, materials, extents, light, detectors.
+/// What clray understood of a scene, for a person: components, materials, extents, light, detectors. Throws as
+/// check_scene() does.
 std::string describe_scene(const Scene& scene);
 
 }  // namespace clray

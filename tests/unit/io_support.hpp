@@ -45,6 +45,10 @@ inline clray::Scene scene(const std::string& kind = "delay") {
   clray::Scene scene;
   scene.path = "meshes/plate.toml";
   scene.name = "plate";
+  scene.materials.push_back({});
+  scene.components.push_back({});
+  scene.components.front().shape = "rectangle";
+  scene.components.front().materials = {0};
   scene.detectors.push_back({kind, kind, {}});
   scene.observers.push_back({});
   return scene;

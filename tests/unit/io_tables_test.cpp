@@ -154,6 +154,7 @@ TEST_CASE("several orientations and observers: rows carry their orientation, fil
 TEST_CASE("like names of variants, observers and bands: as many files as records, each with its own numbers") {
   Scratch scratch;
   Result result = io_test::result();
+  result.orientations.assign(2, {});
   const std::vector<std::array<std::string, 3>> keys = {
       {"", "a b", ""},      {"", "a-b", ""},
       {"", "A B", ""},      {"a", "b", ""},

@@ -43,6 +43,25 @@ TEST_CASE("toml: unknown keys and near misses") {
         "s.toml:3:15: unknown key 'translat' in [component.transform]; did you mean 'translate'?");
 }
 
+TEST_CASE("toml: lengths and angles whose arithmetic would overflow or lose its digits") {
+  const SceneFolder f;
+  const std::string sphere = "[[component]]\nshape = \"sphere\"\n";
+  CHECK(f.complaint(sphere + "transform = { translate = [1e300, 0, 0] }\n") ==
+        "s.toml:3:27: component.transform.translate: expected at most 1e+15 m, found 1e+300");
+  CHECK(f.complaint(sphere + "transform = { angle_deg = -1e11 }\n") ==
+        "s.toml:3:27: component.transform.angle_deg: expected a number in [-1000000,1000000], found -100000000000");
+  CHECK(f.complaint(sphere + "hinge = { axis = [0, 0, 1], angle_deg = 1e11 }\n") ==
+        "s.toml:3:41: component.hinge.angle_deg: expected a number in [-1000000,1000000], found 100000000000");
+  CHECK(f.complaint(sphere + "hinge = { axis = [0, 0, 1], point = [0, -1e16, 0] }\n") ==
+        "s.toml:3:37: component.hinge.point: expected at most 1e+15 m, found 1e+16");
+  CHECK(f.complaint(sphere + "radius = 1e200\n") ==
+        "s.toml:1:1: component.radius: expected a length from 1e-15 to 1e+15 m, found 1e+200");
+  CHECK(f.complaint("reference_point = [0, 1e300, 0]\n" + sphere) ==
+        "s.toml:1:19: reference_point: expected at most 1e+15 m, found 1e+300");
+  CHECK(f.complaint(sphere + "transform = { scale = 1e-200 }\n") ==
+        "components[0]: radius: expected a length from 1e-15 to 1e+15 m, found 1e-200");
+}
+
 TEST_CASE("toml: words out of a list") {
   const SceneFolder f;
   CHECK(f.complaint("[[component]]\nshape = \"shpere\"\n") ==

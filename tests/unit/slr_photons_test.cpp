@@ -27,6 +27,11 @@ struct Run {
   Result result;
   explicit Run(const std::vector<double>& times, const std::vector<double>& intensities = {}) {
     scene.name = "run";
+    scene.materials.emplace_back();
+    scene.components.emplace_back();
+    scene.components[0].shape = "sphere";
+    scene.components[0].materials = {0};
+    scene.detectors.emplace_back();
     scene.observers.emplace_back();
     scene.station.emplace();
     scene.motion.emplace();
@@ -46,6 +51,9 @@ struct Run {
     d.first_bin_start_s = -5e-9;
     d.bin_width_s = 10e-9;
     d.bin_m2_per_sr = {intensity};
+    d.bin_standard_error = d.bin_upper_bound = {0.0};
+    d.hits = {100};
+    d.resolved = {1};
     d.intensity_m2_per_sr.value = intensity;
     result.delay.push_back(d);
   }
@@ -103,6 +111,7 @@ TEST_CASE("photons toward an observer elsewhere go with both ranges") {
     run.scene.observers[i].direction = Vec3(1, 0, 0);
   }
   run.scene.observers[1].range_m = 3e6;
+  for (Orientation& o : run.result.orientations) o.observers.resize(3, Vec3(1, 0, 0));
   for (const char* name : {"station", "far", "beside"}) {
     for (const std::size_t o : {0u, 1u}) run.add(name, o, 0.02);
   }

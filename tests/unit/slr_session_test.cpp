@@ -43,12 +43,18 @@ struct Pass {
   Result result;
   Pass(double seconds, int orientations) {
     scene.name = "two facets";
+    scene.materials.emplace_back();
+    scene.components.emplace_back();
+    scene.components[0].shape = "sphere";
+    scene.components[0].materials = {0};
+    scene.detectors.emplace_back();
     scene.observers.emplace_back();
     scene.station.emplace();
     scene.motion.emplace();
     scene.motion->stop_s = seconds;
-    for (int i = 0; i < orientations; ++i)
-      scene.motion->attitudes.push_back({seconds * i / orientations, {1, 0, 0, 0}});
+    scene.motion->period_s = 2.0 * seconds;
+    // A hair more than the half turn's share, so that no orientation comes at its end.
+    scene.motion->step_rad = kPi / orientations * (1.0 + 1e-6);
     result.seed = 42;
     for (int i = 0; i < orientations; ++i) {
       result.orientations.push_back(
@@ -61,6 +67,9 @@ struct Pass {
       d.bin_m2_per_sr.assign(512, 0.0);
       d.bin_m2_per_sr[static_cast<std::size_t>(100 + i)] = 0.01;
       d.bin_m2_per_sr[static_cast<std::size_t>(400 - i)] = 0.02;
+      d.bin_standard_error = d.bin_upper_bound = std::vector<double>(512, 0.0);
+      d.hits.assign(512, 100);
+      d.resolved.assign(512, 1);
       d.intensity_m2_per_sr.value = 0.03;
       result.delay.push_back(d);
     }
