@@ -122,7 +122,7 @@ void add_options(CLI::App& app, Arguments& a, Texts& t) {
               "where to compute, by kind, number or part of the name [a GPU if there is one, else the CPU]", run);
   text_option(app, "--rays", t.rays, "N", key_help("trace", "rays", "such as 65536, 1e6, 2^22, 4M"), run);
   text_option(app, "--target-error", t.target, "P%",
-              key_help("trace", "target_error_percent", "in % [1%, with at least 2^22 rays]"), run);
+              key_help("trace", "target_error_percent", "in % [1%, with at least 2^22 rays in all]"), run);
   text_option(app, "--time-limit", t.time, "T", key_help("trace", "time_limit_s", "such as 30, 30s, 500ms, 5m, 2h"),
               run);
   text_option(app, "--seed", t.seed, "N", key_help("trace", "seed"), run);

@@ -77,7 +77,10 @@ void read_member(TomlTable& t, const KeyRow& row, T S::*member, S* s) {
   } else if constexpr (std::is_same_v<T, Vec3>) {
     s->*member = row.kind == KeyKind::direction ? t.direction(name) : t.vector(name);
   } else if constexpr (std::is_same_v<T, double>) {
-    s->*member = to_member(row, *t.row_key(row.key));
+    double value = *t.row_key(row.key);
+    // Of an angle without ends whole turns leave while they are exact.
+    if (row.unit == "deg" && std::isinf(row.key.high)) value = std::fmod(value, 360.0);
+    s->*member = to_member(row, value);
   } else {
     if (row.kind == KeyKind::choice) {
       const std::string word = t.choice(name, row.choices);

@@ -100,6 +100,31 @@ void apply_detectors(const SceneOptions& options, Scene* scene) {
   if (!used) throw Error(ErrorCode::usage, "needs a detector with bins, such as delay", "--bins");
 }
 
+/// One observer in the given direction, or at the source, who keeps what all observers of the scene share: of one, all.
+void replace_observers(const SceneOptions& options, Scene* scene) {
+  const std::vector<Observer>& before = scene->observers;
+  Observer one = before.empty() ? Observer{} : before.front();
+  if (before.size() > 1) {
+    const auto shared = [&](auto member) {
+      return std::all_of(before.begin(), before.end(), [&](const Observer& o) { return o.*member == one.*member; });
+    };
+    std::string lost;
+    const auto keep = [&](auto member, const char* key) {
+      if (shared(member)) return;
+      one.*member = Observer{}.*member;
+      lost += std::string(lost.empty() ? "; they differ in " : ", ") + key + ", which is left out";
+    };
+    keep(&Observer::range_m, "range_m");
+    keep(&Observer::acceptance_rad, "acceptance_mrad");
+    one.name.clear();
+    scene->warnings.push_back("--observer stands instead of the scene's " + std::to_string(before.size()) +
+                              " observers" + lost);
+  }
+  one.monostatic = !options.observer;
+  if (options.observer) one.direction = option_direction(*options.observer, "--observer");
+  scene->observers = {one};
+}
+
 void apply_options(const SceneOptions& options, Scene* scene) {
   if (!options.material.empty()) {
     scene->materials = {parse_material(options.material)};
@@ -108,14 +133,8 @@ void apply_options(const SceneOptions& options, Scene* scene) {
     scene->variants.clear();
   }
   if (options.source) scene->source.direction = option_direction(*options.source, "--source");
-  if (options.observer) {
-    Observer observer;
-    observer.direction = option_direction(*options.observer, "--observer");
-    observer.monostatic = false;
-    if (scene->observers.size() == 1) observer.acceptance_rad = scene->observers[0].acceptance_rad;
-    scene->observers = {observer};
-  }
-  if (options.observer_at_source || scene->observers.empty()) scene->observers = {Observer{}};
+  if (options.observer || options.observer_at_source) replace_observers(options, scene);
+  if (scene->observers.empty()) scene->observers = {Observer{}};
   for (Observer& o : scene->observers) {
     if (o.monostatic) o.direction = scene->source.direction;
   }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <set>
 
 #include "clray/error.hpp"
@@ -22,6 +23,48 @@ namespace {
 
 [[noreturn]] void fail(const std::string& where, const std::string& message) {
   throw Error(ErrorCode::input, message, where);
+}
+
+/// Distance over size at which positions in double precision still have five digits for a shape.
+constexpr double kFarthest = 1e11;
+
+double largest(const Vec3& v) {
+  return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
+}
+
+/// The longest of a component's lengths, and how far from the origin its points may be beyond that.
+struct Reach {
+  double size_m = 0.0, distance_m = 0.0;
+};
+
+Reach reach_of(const Component& c) {
+  double size = 0.0, distance = 0.0;
+  if (c.mesh) {
+    Vec3 low(kInfinity), high(-kInfinity);
+    for (const Vec3& v : c.mesh->vertices) {
+      low = glm::min(low, v);
+      high = glm::max(high, v);
+    }
+    size = largest(high - low);
+    distance = std::max(largest(low), largest(high)) * c.transform.scale;
+  } else {
+    const TableRow& row = table_row("shape", c.shape);
+    const std::vector<double> values = row_values(row, c.parameters);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (!row.keys[i].is_switch) size = std::max(size, values[i]);
+    }
+  }
+  distance = std::max(distance, largest(c.transform.translate));
+  if (c.hinge) distance = std::max(distance, largest(c.hinge->point));
+  return {size * c.transform.scale, distance};
+}
+
+std::string reach_fault(const Reach& reach) {
+  if (reach.distance_m <= kFarthest * reach.size_m) return "";
+  return fmt::format(
+      "transform: the component, {:.6g} m large, lies {:.6g} m from the origin, where positions have no "
+      "digits left for its shape; expected at most {:g} times its size",
+      reach.size_m, reach.distance_m, kFarthest);
 }
 
 void check_row(const std::string& where, const TableRow& row, const std::map<std::string, double>& parameters) {
@@ -103,7 +146,8 @@ void check_mesh(const std::string& where, const Mesh* mesh, double scale) {
   }
 }
 
-void check_component(const std::string& where, const Scene& scene, const Component& c) {
+/// Returns how far from the origin the component may reach, m.
+double check_component(const std::string& where, const Scene& scene, const Component& c) {
   const TableRow& row = row_of(where + ".shape", "shape", c.shape);
   check_row(where, row, c.parameters);
   check_number(where + ".transform.scale", c.transform.scale, kPositive);
@@ -121,10 +165,15 @@ void check_component(const std::string& where, const Scene& scene, const Compone
   check_place(where + ".transform.translate", c.transform.translate);
   check_unit(where + ".transform.axis", c.transform.axis);
   check_angle(where + ".transform.angle_rad", c.transform.angle_rad);
-  if (!c.hinge) return;
-  check_unit(where + ".hinge.axis", c.hinge->axis);
-  check_place(where + ".hinge.point", c.hinge->point);
-  check_angle(where + ".hinge.angle_rad", c.hinge->angle_rad);
+  if (c.hinge) {
+    check_unit(where + ".hinge.axis", c.hinge->axis);
+    check_place(where + ".hinge.point", c.hinge->point);
+    check_angle(where + ".hinge.angle_rad", c.hinge->angle_rad);
+  }
+  const Reach reach = reach_of(c);
+  const std::string distance = reach_fault(reach);
+  if (!distance.empty()) fail(where, distance);
+  return reach.size_m + reach.distance_m;
 }
 
 void check_source(const Source& s) {
@@ -181,7 +230,25 @@ std::string shape_fault(const Component& c) {
   return "";
 }
 
+std::string distance_fault(const Component& c) {
+  return reach_fault(reach_of(c));
+}
+
 std::string detector_fault(const DetectorSpec& d) {
+  const auto steps = [&](const char* key) {
+    const auto given = d.parameters.find(key);
+    return given == d.parameters.end() ? 0.0 : given->second;
+  };
+  if (steps("azimuth_steps") > 0.0 && steps("elevation_steps") < 2.0) {
+    return fmt::format(
+        "elevation_steps: a grid of Sun directions has at least 2 (-90 and 90 degrees) beside azimuth_steps "
+        "= {}, found {}",
+        steps("azimuth_steps"), steps("elevation_steps"));
+  }
+  if (steps("elevation_steps") > 0.0 && steps("azimuth_steps") == 0.0) {
+    return fmt::format("azimuth_steps: a grid of Sun directions has at least 1 beside elevation_steps = {}, found 0",
+                       steps("elevation_steps"));
+  }
   const auto start = d.parameters.find("start_ns"), stop = d.parameters.find("stop_ns");
   const bool both = start != d.parameters.end() && stop != d.parameters.end();
   if (both && !(start->second < stop->second)) {
@@ -221,8 +288,14 @@ void check_scene(const Scene& scene) {
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {
     check_material(fmt::format("materials[{}]", i), scene.materials[i]);
   }
+  double body_m = 0.0;
   for (std::size_t i = 0; i < scene.components.size(); ++i) {
-    check_component(fmt::format("components[{}]", i), scene, scene.components[i]);
+    body_m = std::max(body_m, check_component(fmt::format("components[{}]", i), scene, scene.components[i]));
+  }
+  if (const double distance = largest(scene.reference_point); !(distance <= kFarthest * body_m)) {
+    fail("reference_point", fmt::format("lies {:.6g} m from the origin, where delays have no digits left for the body; "
+                                        "expected at most {:g} times its {:.6g} m",
+                                        distance, kFarthest, body_m));
   }
   for (std::size_t i = 0; i < scene.variants.size(); ++i) {
     const std::string where = fmt::format("variants[{}].materials", i);

@@ -26,6 +26,9 @@ void read_trace(TomlTable& root, Scene* scene);
 /// What is wrong with a shape's parameters (each a length, or a switch) taken together, or "".
 std::string shape_fault(const Component& component);
 
+/// What is wrong with a component's place, or "": so far out that positions have no digits left for its shape.
+std::string distance_fault(const Component& component);
+
 /// What is wrong with a detector's parameters taken together, or "".
 std::string detector_fault(const DetectorSpec& detector);
 

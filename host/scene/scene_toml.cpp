@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -21,8 +22,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Whole turns leave while they are exact.
 double radians(double degrees) {
-  return degrees / 180.0 * CLRAY_PI;
+  return std::fmod(degrees, 360.0) / 180.0 * CLRAY_PI;
 }
 
 toml::table parse_file(const std::string& path) {
@@ -228,6 +230,8 @@ void read_components(TomlTable& root, double length_unit_m, Scene* scene) {
     }
     read_component_materials(t, defined, scene, &c);
     t.finish();
+    if (const std::string fault = distance_fault(c); !fault.empty())
+      throw Error(ErrorCode::input, "component." + fault, t.place());
     scene->components.push_back(std::move(c));
   }
   if (scene->components.empty()) {

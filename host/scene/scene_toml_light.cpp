@@ -70,10 +70,14 @@ void read_detectors(TomlTable& root, Scene* scene) {
     }
     t.finish();
     const std::string fault = detector_fault(d);
-    if (!fault.empty()) throw Error(ErrorCode::input, "detector." + fault, t.place());
+    if (!fault.empty()) {
+      const std::string key = fault.substr(0, fault.find(':'));
+      throw Error(ErrorCode::input, "detector." + fault, t.has(key) ? t.place(key) : t.place());
+    }
     for (const DetectorSpec& other : scene->detectors) {
       if (other.name == d.name) {
-        throw Error(ErrorCode::input, "detector.name: a second detector of the name \"" + d.name + "\"",
+        throw Error(ErrorCode::input,
+                    "detector.name: a second detector of the name \"" + d.name + "\"; several of a kind must be named",
                     t.place("name"));
       }
     }

@@ -14,7 +14,7 @@ struct Result;
 class Device;
 
 /// When to stop and how to sample; `clray --list trace` has the ranges. Of rays, target and time whichever comes first;
-/// with none of the three: to 1 % with at least 2^22 rays per orientation.
+/// with none of the three: to 1 % with at least 2^22 rays over all orientations together.
 struct TraceOptions {
   int max_bounces = 1;                  ///< surface interactions
   std::uint64_t rays = 0;               ///< primary rays per orientation, rounded up to 16·2^k; 0: not given

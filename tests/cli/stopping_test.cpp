@@ -104,6 +104,16 @@ TEST_CASE("a target within reach is reported with what was reached, without a wa
   CHECK(ran.summary["reached_percent"].get<double>() <= 1.0);
 }
 
+TEST_CASE("with no stopping option the orientations share at least 2^22 rays") {
+  const Scratch scratch;
+  const Ran one = run(scratch, sphere(kLambert), {});
+  CHECK(one.summary["rays"] == 1 << 22);
+  const std::string turning = "[motion]\naxis = [0, 0, 1]\nperiod_s = 5\nstop_s = 4\nstep_deg = 72\n";
+  const Ran five = run(scratch, sphere(kLambert) + turning, {});
+  CHECK(five.summary["orientations"].size() == 5);
+  CHECK(five.summary["rays"] == 1 << 20);  // 2^22 / 5, rounded up to 16 times a power of two
+}
+
 TEST_CASE("a target of nothing is n/a") {
   const Scratch scratch;
   const std::string black = "model = \"lambert\"\nrho = 0";

@@ -130,7 +130,7 @@ TEST_CASE("toml: numbers out of range or not finite") {
         "s.toml:3:15: trace.max_bounces: expected a whole number in [1..64], found 65");
   CHECK(f.complaint("length_unit = 0\n" + kBall) == "s.toml:1:15: length_unit: expected a number in (0,inf), found 0");
   CHECK(f.complaint(kBall + "[[detector]]\nkind = \"delay\"\nstart_ns = 3\nstop_ns = 2\n") ==
-        "s.toml:2:1: detector.stop_ns: expected more than start_ns = 3, found 2");
+        "s.toml:5:11: detector.stop_ns: expected more than start_ns = 3, found 2");
   CHECK(f.complaint(kBall + "[[detector]]\nkind = \"rgb\"\nwidth = 0\n") ==
         "s.toml:4:9: detector.width: expected a whole number in [1..32768], found 0");
 }
@@ -159,7 +159,7 @@ TEST_CASE("toml: materials that nobody defined, and duplicates") {
   CHECK(f.complaint(kBall + "[[observer]]\nname = \"a\"\n[[observer]]\nname = \"a\"\n") ==
         "s.toml:5:8: observer.name: a second observer of the name \"a\"");
   CHECK(f.complaint(kBall + "[[detector]]\nkind = \"delay\"\n[[detector]]\nkind = \"delay\"\n") ==
-        "s.toml:4:1: detector.name: a second detector of the name \"delay\"");
+        "s.toml:4:1: detector.name: a second detector of the name \"delay\"; several of a kind must be named");
   CHECK(f.complaint(kBall + "[[observer]]\nname = \"a/b\"\n") ==
         "s.toml:3:8: observer.name: expected a name without slashes and control characters, found \"a/b\"");
   CHECK(f.complaint(material + kBall) != "fine");  // an array cannot follow its [[…]] of another kind
