@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The entry point of every pass: reads as the pipeline. A work-item carries a few consecutive points of one replicate
-// of one view (and pixel) through generate, intersect, shade and record, bounce by bounce, and adds its sums at the end.
+// of one view (and pixel) through the stages, bounce by bounce, and adds its sums at the end.
 // clang-format off: the order of the includes is the order of the layers
 #include "shared/portable.h"
 #include "shared/abi.h"
@@ -18,24 +18,21 @@
 #include "stage/state.cl"
 #include "stage/generate.cl"
 #include "stage/intersect.cl"
-#include "stage/shade.cl"
+#include "stage/material.cl"
 #include "stage/record.cl"
+#include "stage/shade.cl"
+#include "stage/scatter.cl"
 #include "stage/path.cl"
 // clang-format on
 
 /// Items first_item … first_item + items - 1 of the block of points first_point … first_point + points - 1 of every
 /// replicate; an item is (view, pixel, replicate, part: every so many-th point, `chunk` in all), part running fastest.
-__kernel void clray_trace(const __global ClrayPass *pass, const __global ClrayView *views,
-                          const __global ClrayConnection *connections, const __global ClrayNode *nodes,
-                          const __global ClrayPrimitive *primitives, const __global f64 *shapes,
-                          const __global ClrayInstance *instances, const __global ClrayMaterial *materials,
-                          const __global f64 *tables, const __global u32 *directions, const __global ClrayDelay *delays,
-                          const __global ClrayStratum *strata, volatile __global i64 *sums, volatile __global i64 *wide, volatile __global u32 *hits,
-                          volatile __global i64 *counters, u64 first_item, u32 items, u32 first_point, u32 points,
+#define CLRAY_ARGUMENT(type, name) type *name,
+#define CLRAY_VALUE(type, name) name,
+__kernel void clray_trace(CLRAY_BUFFERS(CLRAY_ARGUMENT) u64 first_item, u32 items, u32 first_point, u32 points,
                           u32 chunk) {
   if (get_global_id(0) >= items) return;
-  const Buffers g = {pass,   views,      connections, nodes, primitives, shapes, instances, materials,
-                     tables, directions, delays,      strata, sums,       wide,   hits,      counters};
+  const Buffers g = {CLRAY_BUFFERS(CLRAY_VALUE)};
   const u32 chunks = (points + chunk - 1u) / max(chunk, 1u);
   u64 item = first_item + get_global_id(0);
   u32 part = (u32)(item % max(chunks, 1u));

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pipeline/beams.hpp"
 #include "pipeline/portable_tables.hpp"
 #include "pipeline/silhouette.hpp"
-#include "pipeline/views.hpp"
 
 namespace clray {
 namespace {
@@ -64,8 +64,9 @@ std::vector<std::uint32_t> cells_by_direction(std::uint32_t n) {
 /// The strata of one view.
 class Stratifier {
  public:
-  Stratifier(const Geometry& geometry, const PassPlan& plan, std::size_t v, const BeamGrid& grid)
-      : geometry_(geometry), plan_(plan), v_(v), grid_(grid), n_(grid.cells) {}
+  Stratifier(const Geometry& geometry, const PassPlan& plan, const std::optional<PathBins>& bins, const Beams& beams,
+             std::size_t v, const BeamGrid& grid)
+      : geometry_(geometry), plan_(plan), bins_(bins), beams_(beams), v_(v), grid_(grid), n_(grid.cells) {}
 
   /// Appends to *strata and tells the view; does neither where there is nothing to stratify.
   void run(const std::vector<BeamCell>& cells, const std::vector<std::uint32_t>& order, const Vec3& reference,
@@ -74,7 +75,7 @@ class Stratifier {
     cell_u_ = grid_.size_u / n_;
     cell_v_ = grid_.size_v / n_;
     plan_weights();
-    by_path_ = !plan_.delays.empty();
+    by_path_ = bins_.has_value();
     if (by_path_) plan_strips(reference);
     for (const std::uint32_t cell : order) {
       if (cells[cell].state == BeamCell::empty) continue;
@@ -94,12 +95,13 @@ class Stratifier {
   /// What each cell sends to the observers, as a share of all; the mean over observers and (some) lanes.
   void plan_weights() {
     weights_.assign(cells_->size(), 0.0);
-    if (!plan_.connect) return;
-    const std::size_t lanes = plan_.lanes.size(), most = std::max<std::size_t>(kMostLooks / plan_.connections, 1);
+    if (!plan_.traits.connect) return;
+    const std::uint32_t connections = plan_.traits.connections;
+    const std::size_t lanes = plan_.request.lanes.size(), most = std::max<std::size_t>(kMostLooks / connections, 1);
     const std::size_t step = (lanes + most - 1) / most;
     std::vector<double> found(cells_->size());
-    for (std::uint32_t c = 0; c < plan_.connections; ++c) {
-      const vec3 o = to_beam(plan_.connection_rows[v_ * plan_.connections + c].direction);
+    for (std::uint32_t c = 0; c < connections; ++c) {
+      const vec3 o = to_beam(beams_.connections[v_ * connections + c].direction);
       for (std::size_t lane = 0; lane < lanes; lane += step) {
         double sum = 0.0;
         for (std::size_t k = 0; k < found.size(); ++k) sum += found[k] = weight_of((*cells_)[k], lane, o);
@@ -120,18 +122,17 @@ class Stratifier {
 
   /// Strips between edges of the first histogram's bins: several bins or a whole part of one, 256 … 1024 over the body.
   void plan_strips(const Vec3& reference) {
-    const double* o = plan_.connection_rows[v_ * plan_.connections].direction;
+    const double* o = beams_.connections[v_ * plan_.traits.connections].direction;
     way_ = to_beam(o);
     way_.z += 1.0;
-    const DelayPlan& delay = plan_.delays.front();
-    first_ = delay.first_m[0] - v3_dot(way_, to_beam(&reference[0]));
-    width_ = delay.bin_m[0];
-    const double extent = plan_.path_high_m - plan_.path_low_m;
+    first_ = bins_->first_m - v3_dot(way_, to_beam(&reference[0]));
+    width_ = bins_->bin_m;
+    const double extent = plan_.paths.high() - plan_.paths.low();
     while (extent > kMostStrips * width_) width_ *= 2.0;
     while (extent < 0.25 * kMostStrips * width_) width_ *= 0.5;
-    const double cells = static_cast<double>(plan_.views.size() * cells_->size());
-    lowest_ = static_cast<std::int64_t>(std::floor((plan_.path_low_m - delay.first_m[0]) / width_));
-    highest_ = static_cast<std::int64_t>(std::floor((plan_.path_high_m - delay.first_m[0]) / width_));
+    const double cells = static_cast<double>(beams_.views.size() * cells_->size());
+    lowest_ = static_cast<std::int64_t>(std::floor((plan_.paths.low() - bins_->first_m) / width_));
+    highest_ = static_cast<std::int64_t>(std::floor((plan_.paths.high() - bins_->first_m) / width_));
     cuts_ = std::clamp(static_cast<int>(8.0 * kMostSlots / cells), 1, kMostCuts);  // few cells need so many
   }
 
@@ -309,6 +310,8 @@ class Stratifier {
 
   const Geometry& geometry_;
   const PassPlan& plan_;
+  const std::optional<PathBins>& bins_;
+  const Beams& beams_;
   std::size_t v_;
   const BeamGrid& grid_;
   std::uint32_t n_;
@@ -324,17 +327,18 @@ class Stratifier {
 
 }  // namespace
 
-void stratify_beams(const Scene& scene, const Geometry& geometry, PassPlan* plan) {
-  if (plan->pixels || !scene.trace.sobol || !scene.trace.stratify) return;
-  const std::uint32_t n = grid_cells(plan->views.size());
+Beams stratified(Beams beams, const Scene& scene, const Geometry& geometry, const PassPlan& plan,
+                 const std::optional<PathBins>& bins) {
+  if (plan.request.pixels || !scene.trace.sobol || !scene.trace.stratify) return beams;
+  const std::uint32_t n = grid_cells(beams.views.size());
   std::vector<std::uint32_t> order;
-  if (plan->delays.empty()) {
-    for (std::uint32_t k = 0; k < n * n; ++k) order.push_back(k);
-  } else {
+  if (bins) {
     order = cells_by_direction(n);
+  } else {
+    for (std::uint32_t k = 0; k < n * n; ++k) order.push_back(k);
   }
-  for (std::size_t v = 0; v < plan->views.size(); ++v) {
-    ClrayView& view = plan->views[v];
+  for (std::size_t v = 0; v < beams.views.size(); ++v) {
+    ClrayView& view = beams.views[v];
     const vec3 s = v3_load(view.toward), corner = v3_load(view.corner);
     BeamGrid grid{{}, {}, s, 0.0, 0.0, v3_length(v3_load(view.edge_u)), v3_length(v3_load(view.edge_v)), n};
     if (!(grid.size_u * grid.size_v > 0.0)) continue;
@@ -342,11 +346,12 @@ void stratify_beams(const Scene& scene, const Geometry& geometry, PassPlan* plan
     grid.u0 = v3_dot(corner, grid.u);
     grid.v0 = v3_dot(corner, grid.v);
     const std::vector<BeamCell> cells =
-        silhouette_cells(geometry, motions_of(scene, geometry, plan->orientations[v]), grid);
+        silhouette_cells(geometry, motions_of(scene, geometry, plan.request.orientations[v]), grid);
     if (cells.empty()) continue;
-    Stratifier(geometry, *plan, v, grid)
-        .run(cells, order, scene.reference_point, &plan->strata, &view, &plan->area_m2[v]);
+    Stratifier(geometry, plan, bins, beams, v, grid)
+        .run(cells, order, scene.reference_point, &beams.strata, &view, &beams.area_m2[v]);
   }
+  return beams;
 }
 
 }  // namespace clray

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // How a beam's points are spread over the body. The cells that the body can be in (silhouette.hpp) are cut into slots;
 // slots form strips; the first coordinate of a point chooses a strip and the place across it, the second a slot of the
-// strip and the place along it. With a delay detector a strip is an interval of path length that ends at edges of the
-// histogram's bins, and cells are cut along lines of equal path, so that strata of the first coordinate are strata of
-// the histogram; within a strip, slots go round the beam's middle, so that strata of the second are places on the body.
-// Without one a strip is a column of cells. Probabilities mix area (nothing is starved), path length (rare delays get
-// their share) and what the surface sends to the observers (peaks of reflection are met): defensive importance sampling
-// after Hesterberg (1995). A ray's weight is its slot's area over its probability and all slots together are all cells,
-// so the estimate is unbiased whatever steers it. What it gains is measured in docs/error.md. Plain fp64 without
-// contraction and clray's own functions: the same strata on every host.
+// strip and the place along it. With a histogram of delay a strip is an interval of path length that ends at edges of
+// the histogram's bins, and cells are cut along lines of equal path, so that strata of the first coordinate are strata
+// of the histogram; within a strip, slots go round the beam's middle, so that strata of the second are places on the
+// body. Without one a strip is a column of cells. Probabilities mix area (nothing is starved), path length (rare delays
+// get their share) and what the surface sends to the observers (peaks of reflection are met): defensive importance
+// sampling after Hesterberg (1995). A ray's weight is its slot's area over its probability and all slots together are
+// all cells, so the estimate is unbiased whatever steers it. What it gains is measured in docs/error.md. Plain fp64
+// without contraction and clray's own functions: the same strata on every host.
 #pragma once
 
 #include "clray/scene.hpp"
@@ -17,8 +17,10 @@
 
 namespace clray {
 
-/// Fills the plan's strata, and what its views and areas know of them, after its views and windows are known. Leaves a
-/// view without strata (its rectangle is then sampled evenly) for the random sampler, and where strata cost too much.
-void stratify_beams(const Scene& scene, const Geometry& geometry, PassPlan* plan);
+/// The beams with their strata, for a plan whose surfaces and path lengths are known; `bins`: edges that strips of path
+/// length end at. Leaves a view without strata (its rectangle is then sampled evenly) for the random sampler, and where
+/// strata cost too much.
+Beams stratified(Beams beams, const Scene& scene, const Geometry& geometry, const PassPlan& plan,
+                 const std::optional<PathBins>& bins);
 
 }  // namespace clray

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a pass ended with, and how its sums become results.
+// What a pass ended with, and how its sums become results: each detector's room does that (detector/room.hpp).
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "pipeline/geometry.hpp"
-#include "pipeline/pass_runner.hpp"
 #include "pipeline/plan.hpp"
 
 namespace clray {

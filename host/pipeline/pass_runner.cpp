@@ -9,12 +9,15 @@
 #include <atomic>
 #include <chrono>
 #include <exception>
+#include <map>
 #include <mutex>
 #include <thread>
 
 #include "clray/error.hpp"
 #include "device/buffers.hpp"
 #include "pipeline/sobol.hpp"
+#include "pipeline/work_source.hpp"
+#include "shared/buffers.h"
 
 namespace clray {
 namespace {
@@ -33,53 +36,62 @@ double now() {
 struct PassRunner::OnDevice {
   OpenedDevice& opened;
   cl::Kernel kernel;
-  cl::Buffer pass, sums, wide, hits, counters;
-  std::vector<cl::Buffer> constant;  // kept alive with the kernel
+  std::map<std::string, cl::Buffer> buffers;  // by the names of shared/buffers.h
   ClrayPass constants;
   std::uint64_t slice_items = 4096;  // of the next launch
   bool has_wide = false;
+  cl_uint first_argument = 0;  // behind the buffers
 
   OnDevice(OpenedDevice& device, const PassPlan& plan, const Geometry& geometry)
       : opened(device), constants(plan.constants) {
-    const cl::Program program = build_program(opened, "trace.cl", plan.options);
-    kernel = make_kernel(opened, program, "clray_trace");
+    const ProgramOptions& options = plan.program.options;
+    kernel = make_kernel(opened, build_program(opened, "trace.cl", options), "clray_trace");
     check_size(plan);
-    has_wide = plan.options.defines.at("CLRAY_WIDE") == "1";
-    pass = make_buffer(opened, std::vector<ClrayPass>{constants});
-    sums = make_zero_buffer<std::int64_t>(opened, plan.sums_size);
-    wide = make_zero_buffer<std::int64_t>(opened, has_wide ? plan.sums_size : 1);
-    hits = make_zero_buffer<std::uint32_t>(opened, plan.hits_size);
-    counters = make_zero_buffer<std::int64_t>(opened, CLRAY_COUNTERS);
-    keep(plan.views);
-    keep(plan.connection_rows);
-    keep(plan.nodes);
-    keep(geometry.primitives);
-    keep(geometry.shapes);
-    keep(plan.instances);
-    keep(plan.surfaces.materials);
-    keep(plan.surfaces.tables);
-    keep(sobol_directions_reversed());
-    keep(plan.delay_rows);
-    keep(plan.strata);
-    cl_uint index = 0;
-    const auto set = [&](const cl::Buffer& buffer) { kernel.setArg(index++, buffer); };
+    has_wide = options.defines.at("CLRAY_WIDE") == "1";
+    fill(plan, geometry);
     with_cl_errors(opened.info.name, [&] {
-      set(pass);
-      for (const cl::Buffer& buffer : constant) set(buffer);
-      set(sums);
-      set(wide);
-      set(hits);
-      set(counters);
+#define CLRAY_BIND(type, name) kernel.setArg(first_argument++, buffers.at(#name));
+      CLRAY_BUFFERS(CLRAY_BIND)
+#undef CLRAY_BIND
     });
   }
 
   template <class T>
-  void keep(const std::vector<T>& values) {
-    constant.push_back(make_buffer(opened, values));
+  void put(const char* name, const std::vector<T>& values) {
+    buffers[name] = make_buffer(opened, values);
+  }
+
+  void fill(const PassPlan& plan, const Geometry& geometry) {
+    std::vector<ClrayBlock> blocks;
+    for (const SumBlock& block : plan.layout.blocks) blocks.push_back({block.offset, block.width, 0});
+    std::vector<ClrayDetector> detectors;
+    std::vector<double> settings;
+    for (const PassDetector& detector : plan.detectors) {
+      detectors.push_back({detector.first_block, static_cast<std::uint32_t>(settings.size())});
+      settings.insert(settings.end(), detector.settings.begin(), detector.settings.end());
+    }
+    put("pass", std::vector<ClrayPass>{constants});
+    put("views", plan.beams.views);
+    put("connections", plan.beams.connections);
+    put("nodes", plan.beams.nodes);
+    put("primitives", geometry.primitives);
+    put("shapes", geometry.shapes);
+    put("instances", plan.beams.instances);
+    put("materials", plan.surfaces.materials);
+    put("tables", plan.surfaces.tables);
+    put("directions", sobol_directions_reversed());
+    put("detectors", detectors);
+    put("blocks", blocks);
+    put("settings", settings);
+    put("strata", plan.beams.strata);
+    buffers["sums"] = make_zero_buffer<std::int64_t>(opened, plan.layout.values);
+    buffers["wide"] = make_zero_buffer<std::int64_t>(opened, has_wide ? plan.layout.values : 1);
+    buffers["counts"] = make_zero_buffer<std::uint32_t>(opened, plan.layout.counts);
+    buffers["counters"] = make_zero_buffer<std::int64_t>(opened, CLRAY_COUNTERS);
   }
 
   void check_size(const PassPlan& plan) const {
-    const double bytes = 8.0 * static_cast<double>(plan.sums_size), limit = most_bytes();
+    const double bytes = 8.0 * static_cast<double>(plan.layout.values), limit = most_bytes();
     if (bytes > limit)
       throw Error(
           ErrorCode::input,
@@ -94,26 +106,26 @@ struct PassRunner::OnDevice {
 
   /// Sets everything that is summed to zero.
   void clear(const PassPlan& plan) {
-    zero_buffer<std::int64_t>(opened, sums, plan.sums_size);
-    if (has_wide) zero_buffer<std::int64_t>(opened, wide, plan.sums_size);
-    zero_buffer<std::uint32_t>(opened, hits, plan.hits_size);
-    zero_buffer<std::int64_t>(opened, counters, CLRAY_COUNTERS);
+    zero_buffer<std::int64_t>(opened, buffers.at("sums"), plan.layout.values);
+    if (has_wide) zero_buffer<std::int64_t>(opened, buffers.at("wide"), plan.layout.values);
+    zero_buffer<std::uint32_t>(opened, buffers.at("counts"), plan.layout.counts);
+    zero_buffer<std::int64_t>(opened, buffers.at("counters"), CLRAY_COUNTERS);
   }
 
   void set_epoch(std::uint32_t epoch) {
     if (constants.epoch == epoch) return;
     constants.epoch = epoch;
-    write_buffer(opened, pass, std::vector<ClrayPass>{constants});
+    write_buffer(opened, buffers.at("pass"), std::vector<ClrayPass>{constants});
   }
 
   void launch_items(std::uint64_t first, std::uint32_t items, std::uint32_t first_point, std::uint32_t points,
                     std::uint32_t chunk, std::uint32_t group) {
     with_cl_errors(opened.info.name, [&] {
-      kernel.setArg(16, static_cast<cl_ulong>(first));
-      kernel.setArg(17, static_cast<cl_uint>(items));
-      kernel.setArg(18, static_cast<cl_uint>(first_point));
-      kernel.setArg(19, static_cast<cl_uint>(points));
-      kernel.setArg(20, static_cast<cl_uint>(chunk));
+      kernel.setArg(first_argument + 0, static_cast<cl_ulong>(first));
+      kernel.setArg(first_argument + 1, static_cast<cl_uint>(items));
+      kernel.setArg(first_argument + 2, static_cast<cl_uint>(first_point));
+      kernel.setArg(first_argument + 3, static_cast<cl_uint>(points));
+      kernel.setArg(first_argument + 4, static_cast<cl_uint>(chunk));
     });
     launch(opened, kernel, items, group);
     finish(opened);
@@ -134,7 +146,7 @@ bool PassRunner::run(Sums* sums, std::uint64_t points, std::uint32_t epoch,
                      const std::function<bool(double)>& keep_going) {
   for (auto& device : devices_) device->set_epoch(epoch);
   const std::uint64_t begin = sums->points;
-  const std::uint64_t bounces = static_cast<std::uint64_t>(plan_.max_bounces) + 1;
+  const std::uint64_t bounces = static_cast<std::uint64_t>(plan_.traits.max_bounces) + 1;
   std::uint64_t block = kMostContributions / (2 * bounces);  // a bounce enters a book at most twice
   while ((block & (block - 1)) != 0) block &= block - 1;     // a power of two keeps neighbouring points together
   if (options_.slice_points != 0) block = std::min(block, options_.slice_points);
@@ -165,27 +177,28 @@ bool PassRunner::run(Sums* sums, std::uint64_t points, std::uint32_t epoch,
 bool PassRunner::run_block(std::uint32_t first_point, std::uint32_t points,
                            const std::function<bool(double)>& keep_going) {
   const std::uint32_t chunk = std::min(kChunk, points);
-  const std::uint64_t pixels = plan_.pixels ? static_cast<std::uint64_t>(plan_.width) * plan_.height : 1;
-  const std::uint64_t items =
-      (static_cast<std::uint64_t>(points) + chunk - 1) / chunk * plan_.replicates * pixels * plan_.views.size();
-  std::atomic<std::uint64_t> next{0};
+  const PictureSize& size = plan_.request.picture;
+  const std::uint64_t pixels = plan_.request.pixels ? static_cast<std::uint64_t>(size.width) * size.height : 1;
+  WorkSource source((static_cast<std::uint64_t>(points) + chunk - 1) / chunk * plan_.request.replicates * pixels *
+                    plan_.beams.views.size());
   std::atomic<bool> go{true};
   std::mutex mutex;
   std::exception_ptr failure;
   const auto work = [&](OnDevice& device) {
     try {
       while (go) {
-        const std::uint64_t first = next.fetch_add(device.slice_items);
-        if (first >= items) return;
-        const auto count = static_cast<std::uint32_t>(std::min(device.slice_items, items - first));
+        const std::optional<WorkRange> range = source.take(device.slice_items);
+        if (!range) return;
+        const auto count = static_cast<std::uint32_t>(range->count);
         const double start = now();
-        device.launch_items(first, count, first_point, points, chunk, options_.work_group_size);
+        device.launch_items(range->first, count, first_point, points, chunk, options_.work_group_size);
         const double seconds = now() - start;
         const double factor = std::clamp(kSliceSeconds / std::max(seconds, 1e-6), 0.25, 4.0);
         if (count == device.slice_items || factor < 1.0)
           device.slice_items = std::clamp<std::uint64_t>(static_cast<std::uint64_t>(factor * count), 256, 1u << 26);
         const std::lock_guard<std::mutex> lock(mutex);
-        if (!keep_going(std::min(1.0, static_cast<double>(first + count) / static_cast<double>(items)))) go = false;
+        const double done = static_cast<double>(range->first + count) / static_cast<double>(source.items());
+        if (!keep_going(std::min(1.0, done))) go = false;
       }
     } catch (...) {
       const std::lock_guard<std::mutex> lock(mutex);
@@ -218,29 +231,16 @@ void add_to(std::vector<Sum>* values, OpenedDevice& opened, const cl::Buffer& bu
 }  // namespace
 
 void PassRunner::drain(Sums* sums) {
-  sums->values.resize(plan_.sums_size, 0);
-  sums->hits.resize(plan_.hits_size, 0);
+  sums->values.resize(plan_.layout.values, 0);
+  sums->counts.resize(plan_.layout.counts, 0);
   for (auto& device : devices_) {
     OpenedDevice& opened = device->opened;
-    add_to(&sums->values, opened, device->sums, 1);
-    if (device->has_wide) add_to(&sums->values, opened, device->wide, 4294967296);
-    const auto hits = read_buffer<std::uint32_t>(opened, device->hits, plan_.hits_size);
-    std::size_t k = 0;
-    if (plan_.pixels) {
-      for (; k < hits.size(); ++k) sums->hits[k] += hits[k];
-    }
-    for (const DelayPlan& delay : plan_.delays) {
-      const std::size_t row = delay.bins + 3;
-      const std::size_t rows = plan_.views.size() * plan_.lanes.size() * plan_.connections * plan_.replicates;
-      for (std::size_t r = 0; r < rows; ++r) {
-        const std::size_t at = delay.hits + r * row;
-        // The largest weight is a maximum, the rest are counts.
-        sums->hits[at] = std::max<std::uint64_t>(sums->hits[at], hits[at]);
-        for (std::size_t b = 1; b < row; ++b) sums->hits[at + b] += hits[at + b];
-      }
-    }
-    const auto counters = read_buffer<std::int64_t>(opened, device->counters, CLRAY_COUNTERS);
-    for (std::size_t c = 0; c < CLRAY_COUNTERS; ++c) sums->counters[c] += static_cast<std::uint64_t>(counters[c]);
+    add_to(&sums->values, opened, device->buffers.at("sums"), 1);
+    if (device->has_wide) add_to(&sums->values, opened, device->buffers.at("wide"), 4294967296);
+    merge_counts(plan_.layout, read_buffer<std::uint32_t>(opened, device->buffers.at("counts"), plan_.layout.counts),
+                 &sums->counts);
+    const auto events = read_buffer<std::int64_t>(opened, device->buffers.at("counters"), CLRAY_COUNTERS);
+    for (std::size_t c = 0; c < CLRAY_COUNTERS; ++c) sums->events[c] += static_cast<std::uint64_t>(events[c]);
     device->clear(plan_);
   }
 }

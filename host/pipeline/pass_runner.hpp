@@ -3,7 +3,6 @@
 // the sums mean.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -13,16 +12,6 @@
 #include "pipeline/plan.hpp"
 
 namespace clray {
-
-using Sum = __int128;
-
-/// Integer sums of a pass so far; two runs of the same points have equal sums.
-struct Sums {
-  std::vector<Sum> values;  ///< at scale 2^S, layout of the plan
-  std::vector<std::uint64_t> hits;
-  std::array<std::uint64_t, CLRAY_COUNTERS> counters{};
-  std::uint64_t points = 0;  ///< per replicate and view (and pixel)
-};
 
 /// One program and its buffers on every opened device.
 class PassRunner {

@@ -27,7 +27,7 @@ class Table {
     nodes_.push_back(last);
     for (std::size_t k = 1; k < seeds.size(); ++k) {
       const Node next = node(seeds[k]);
-      refine(last, next);
+      refine(last, between(last, next), next);
       last = next;
     }
     return std::move(nodes_);
@@ -35,26 +35,22 @@ class Table {
 
  private:
   Node node(double mu) const { return {mu, reflectance_(std::max(mu, kLeastMu))}; }
+  Node between(const Node& a, const Node& b) const { return node(a.mu + 0.5 * (b.mu - a.mu)); }
 
-  /// Appends what lies after `a` up to `b`.
-  void refine(const Node& a, const Node& b) {
-    const double width = b.mu - a.mu;
-    const Node middle = node(a.mu + 0.5 * width);
-    if (width > kLeastWidth && nodes_.size() < kMostNodes && !straight(a, middle, b)) {
-      refine(a, middle);
-      refine(middle, b);
+  /// Appends what lies after `a` up to `b`; `middle` lies between them.
+  void refine(const Node& a, const Node& middle, const Node& b) {
+    const Node first = between(a, middle), last = between(middle, b);
+    if (b.mu - a.mu > kLeastWidth && nodes_.size() < kMostNodes &&
+        !(straight(a, middle, b) && straight(a, first, middle) && straight(middle, last, b))) {
+      refine(a, first, middle);
+      refine(middle, last, b);
     } else {
       nodes_.push_back(b);
     }
   }
 
-  bool straight(const Node& a, const Node& middle, const Node& b) const {
-    if (std::fabs(0.5 * (a.value + b.value) - middle.value) > 0.5 * kReflectanceError) return false;
-    for (const double share : {0.25, 0.75}) {
-      const double line = a.value + share * (b.value - a.value);
-      if (std::fabs(node(a.mu + share * (b.mu - a.mu)).value - line) > 0.5 * kReflectanceError) return false;
-    }
-    return true;
+  static bool straight(const Node& a, const Node& middle, const Node& b) {
+    return std::fabs(0.5 * (a.value + b.value) - middle.value) <= 0.5 * kReflectanceError;
   }
 
   const std::function<double(double)>& reflectance_;
@@ -66,7 +62,7 @@ class Table {
 std::vector<double> reflectance_table(const std::function<double(double)>& reflectance,
                                       const std::vector<double>& theta_rad) {
   std::vector<double> seeds{0.0, 0.375, 0.75, 1.0};
-  for (double mu = 0x1p-24; mu < 1.0; mu *= 2.0) seeds.push_back(mu);  // grazing incidence has features of any scale
+  for (double mu = 0x1p-24; mu < 1.0; mu *= 4.0) seeds.push_back(mu);  // grazing incidence has features of any scale
   for (const double theta : theta_rad) {
     double s, c;
     el_sincos(theta, &s, &c);

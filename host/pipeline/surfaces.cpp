@@ -64,7 +64,7 @@ std::vector<std::vector<Lane>> lane_groups(const Scene& scene, const std::vector
   };
   std::vector<Group> groups;
   for (const Lane& lane : lanes) {
-    Group one{{}, lane.variant_index, build_surfaces(scene, {lane}, false, false).delta, {lane}};
+    Group one{{}, lane.variant_index, build_surfaces(scene, {lane}).delta, {lane}};
     for (const Material& base : scene.materials) one.two_sided.push_back(material_of(scene, lane, base).two_sided);
     const auto fits = [&](const Group& group) {
       if (one.delta || group.delta || group.two_sided != one.two_sided) return false;
@@ -84,12 +84,12 @@ std::vector<std::vector<Lane>> lane_groups(const Scene& scene, const std::vector
   return out;
 }
 
-Surfaces build_surfaces(const Scene& scene, const std::vector<Lane>& lanes, bool reflectance, bool thermal) {
+Surfaces build_surfaces(const Scene& scene, const std::vector<Lane>& lanes, ReflectanceMemo* memo) {
   Surfaces s;
   s.columns = static_cast<std::uint32_t>(scene.materials.size());
   std::vector<bool> used(table("brdf").size(), false);
   std::map<const BrdfTable*, std::uint32_t> placed;
-  std::map<std::vector<double>, std::uint32_t> known;  // reflectance tables by what they depend on
+  std::map<std::pair<const BrdfTable*, std::vector<double>>, std::uint32_t> known;  // offsets of reflectance tables
   const std::vector<double> none;
   for (const Lane& lane : lanes) {
     for (const Material& base : scene.materials) {
@@ -103,24 +103,23 @@ Surfaces build_surfaces(const Scene& scene, const std::vector<Lane>& lanes, bool
       out.model = static_cast<std::uint32_t>(row);
       out.flags = m.two_sided ? CLRAY_MATERIAL_TWO_SIDED : 0u;
       for (std::size_t k = 0; k < values.size() && k < CLRAY_MATERIAL_PARAMETERS; ++k) out.p[k] = values[k];
-      if (thermal) out.emissivity = 1.0 - m.infrared_reflectance;
+      out.emissivity = 1.0 - m.infrared_reflectance;
       if (m.table) {
         if (!placed.count(m.table.get())) placed[m.table.get()] = add_table(s.tables, *m.table);
         out.table = placed[m.table.get()];
       }
-      if (reflectance) {
-        std::vector<double> key(values);
-        key.push_back(row);
-        key.push_back(out.table);
-        const auto found = known.find(key);
-        if (found != known.end()) {
-          out.reflectance = found->second;
-        } else {
-          const std::vector<double> nodes = reflectance_table(
-              [&](double mu) { return surface_reflectance(out, s.tables, mu); }, m.table ? m.table->theta_i_rad : none);
-          out.reflectance = known[key] = static_cast<std::uint32_t>(s.tables.size());
+      if (memo != nullptr) {
+        std::pair<const BrdfTable*, std::vector<double>> key(m.table.get(), values);
+        key.second.push_back(row);
+        if (!known.count(key)) {
+          if (!memo->count(key))
+            (*memo)[key] = reflectance_table([&](double mu) { return surface_reflectance(out, s.tables, mu); },
+                                             m.table ? m.table->theta_i_rad : none);
+          const std::vector<double>& nodes = (*memo)[key];
+          known[key] = static_cast<std::uint32_t>(s.tables.size());
           s.tables.insert(s.tables.end(), nodes.begin(), nodes.end());
         }
+        out.reflectance = known[key];
       }
       s.one_sided = s.one_sided || !m.two_sided;
       s.delta = s.delta || table("brdf")[row].delta;

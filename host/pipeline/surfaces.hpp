@@ -4,7 +4,9 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "clray/scene.hpp"
@@ -37,8 +39,11 @@ std::vector<Lane> lanes_of(const Scene& scene);
 std::vector<std::vector<Lane>> lane_groups(const Scene& scene, const std::vector<Lane>& lanes, bool scatter,
                                            std::size_t most);
 
-/// Materials of `lanes`; `reflectance`: tables of directional reflectance too; `thermal`: emissivities too.
-Surfaces build_surfaces(const Scene& scene, const std::vector<Lane>& lanes, bool reflectance, bool thermal);
+/// Tables of directional reflectance by what they depend on, so that the passes of a scene make each once.
+using ReflectanceMemo = std::map<std::pair<const BrdfTable*, std::vector<double>>, std::vector<double>>;
+
+/// Materials of `lanes`; with `memo`, tables of directional reflectance too.
+Surfaces build_surfaces(const Scene& scene, const std::vector<Lane>& lanes, ReflectanceMemo* memo = nullptr);
 
 /// Bound of f·mu_o over all lanes and materials at cos(phase/2); 1/sr.
 double weight_bound(const Surfaces& surfaces, double cos_half_phase);

@@ -10,6 +10,7 @@
 
 #include "clray/error.hpp"
 #include "clray/result.hpp"
+#include "pipeline/course.hpp"
 #include "pipeline/estimate.hpp"
 #include "pipeline/geometry.hpp"
 #include "pipeline/outcome.hpp"
@@ -20,7 +21,6 @@
 namespace clray {
 namespace {
 
-constexpr std::uint64_t kFirstPoints = 1u << 10;   // of a search, per replicate
 constexpr std::uint64_t kLeastRays = 1u << 22;     // with no stopping option
 constexpr std::uint64_t kZeroRays = 1u << 20;      // after which a zero total counts as zero
 constexpr std::uint64_t kMostPoints = 1ull << 32;  // of a 32-bit Sobol sequence
@@ -37,70 +37,138 @@ std::uint64_t power_of_two_above(std::uint64_t value) {
   return p;
 }
 
-/// One pass from its first ray to its last: search, confirm, or a fixed number of rays.
+/// Points of each half of a picture's pixel.
+std::uint64_t picture_points(const PassPlan& plan, const TraceOptions& options) {
+  const PictureSize& size = plan.request.picture;
+  double samples = 8.0;
+  if (size.samples > 0) {
+    samples = size.samples;
+  } else if (options.rays != 0) {
+    samples = static_cast<double>(options.rays) / (static_cast<double>(size.width) * size.height);
+  } else if (options.target_error_percent > 0.0) {
+    samples = 64.0;  // where a picture's search for a target gives up; `samples` or --rays go on
+  }
+  return power_of_two_above(static_cast<std::uint64_t>(std::max(1.0, std::ceil(samples / plan.request.replicates))));
+}
+
+CourseRules rules_of(const PassPlan& plan, const TraceOptions& o) {
+  const std::uint64_t replicates = plan.request.replicates;
+  CourseRules rules;
+  rules.target_asked = o.target_error_percent > 0.0;
+  rules.target = o.target_error_percent / 100.0;
+  rules.enough_points = (kZeroRays + replicates - 1) / replicates;
+  // A picture's error is a mean over its pixels: each half-difference has one degree of freedom, all have many.
+  rules.t95 = plan.request.pixels ? 1.96 : student_t95(static_cast<int>(replicates) - 1);
+  if (plan.request.pixels) {
+    rules.fixed_points = picture_points(plan, o);
+    rules.fixed_end = o.rays != 0 || !rules.target_asked ? "rays" : "samples";
+    // Large cubes take longer to read than to trace: with no target to meet, three doublings tell the error's course.
+    rules.first_points = rules.target_asked ? 1 : std::max<std::uint64_t>(1, rules.fixed_points / 4);
+    rules.enough_points = 0;
+    rules.least_to_stop = 4;
+  } else if (o.rays != 0) {
+    rules.fixed_points = power_of_two_above((o.rays + replicates - 1) / replicates);
+  } else if (!rules.target_asked && o.time_limit_s > 0.0) {
+    rules.fixed_points = kMostPoints;
+  } else {
+    rules.most_points = std::clamp<std::uint64_t>(o.max_rays / replicates, 1, kMostPoints);
+    if (!rules.target_asked) {
+      rules.target = kDefaultTarget;
+      rules.least_points = power_of_two_above(kLeastRays / replicates / plan.beams.views.size());
+    }
+  }
+  if (rules.fixed_points > kMostPoints)
+    throw Error(ErrorCode::usage, fmt::format("at most {} rays per orientation can be traced with {} replicates",
+                                              kMostPoints * replicates, replicates));
+  return rules;
+}
+
+/// Root mean square over covered pixels of the standard error, over their mean radiance.
+double picture_error(const PassPlan& plan, const Sums& sums) {
+  const std::uint64_t pixels = static_cast<std::uint64_t>(plan.request.picture.width) * plan.request.picture.height;
+  const PassDetector& detector = *find_detector(plan, "pixels");
+  const std::uint64_t radiance = plan.layout.blocks[detector.first_block].offset;
+  const std::uint64_t covered = plan.layout.blocks[detector.first_block + 1].offset;
+  const std::size_t lanes = plan.request.lanes.size();
+  double squares = 0.0, mean = 0.0, count = 0.0;
+  for (std::size_t row = 0; row < plan.beams.views.size() * lanes; ++row) {
+    for (std::uint64_t p = 0; p < pixels; ++p) {
+      if (sums.counts[covered + row / lanes * pixels + p] == 0) continue;
+      const std::uint64_t at = radiance + 2 * row * pixels + p;
+      const double a = static_cast<double>(sums.values[at]), b = static_cast<double>(sums.values[at + pixels]);
+      mean += 0.5 * (a + b);
+      squares += 0.25 * (a - b) * (a - b);
+      count += 1.0;
+    }
+  }
+  return mean > 0.0 ? std::sqrt(squares / count) / (mean / count) : kNan;
+}
+
+/// Takes a pass along its course, step by step.
 class PassDriver {
  public:
-  PassDriver(const Scene& scene, const Geometry& geometry, const PassPlan& plan, PassRunner& runner,
+  PassDriver(const Geometry& geometry, const PassPlan& plan, PassRunner& runner, const TraceOptions& options,
              const TraceHooks& hooks, double time_left_s)
-      : options_(scene.trace),
-        geometry_(geometry),
+      : geometry_(geometry),
         plan_(plan),
         runner_(runner),
         hooks_(hooks),
+        course_(rules_of(plan, options)),
         start_(now()),
-        time_left_s_(time_left_s),
-        // A picture's error is a mean over its pixels: each half-difference has one degree of freedom, all have many.
-        t95_(plan.pixels ? 1.96 : student_t95(static_cast<int>(plan.replicates) - 1)) {}
+        time_left_s_(time_left_s) {}
 
   PassOutcome run() {
-    if (plan_.pixels) {
-      run_fixed(picture_points());
-    } else if (options_.rays != 0) {
-      run_fixed(power_of_two_above((options_.rays + plan_.replicates - 1) / plan_.replicates));
-    } else if (options_.target_error_percent > 0.0 || options_.time_limit_s <= 0.0) {
-      run_to_target();
-    } else {
-      run_fixed(kMostPoints);
-      out_.partial = stopped_;  // running out of the time asked for is no early end
-    }
-    out_.ending.half_width = t95_ * last_error_;
-    out_.ending.rays = static_cast<std::uint64_t>(static_cast<double>(out_.sums.points) * rays_per_point());
-    return std::move(out_);
+    while (const std::optional<CourseStep> step = course_.next()) take(*step);
+    return answer();
   }
 
  private:
-  std::uint64_t picture_points() const {
-    const double pixels = static_cast<double>(plan_.width) * plan_.height;
-    double samples = 8.0;
-    if (plan_.picture_samples > 0) {
-      samples = plan_.picture_samples;
-    } else if (options_.rays != 0) {
-      samples = static_cast<double>(options_.rays) / pixels;
-    } else if (options_.target_error_percent > 0.0) {
-      samples = 64.0;  // where a picture's search for a target gives up; `samples` or --rays go on
-    }
-    return power_of_two_above(static_cast<std::uint64_t>(std::max(1.0, std::ceil(samples / plan_.replicates))));
+  void take(const CourseStep& step) {
+    Sums& sums = step.confirms ? confirmed_ : searched_;
+    double& seconds = step.confirms ? confirm_seconds_ : search_seconds_;
+    if (!step.confirms || step.epoch != confirmed_epoch_) confirmed_ = Sums();  // the last one missed
+    if (step.confirms && sums.points == 0) seconds = 0.0;
+    if (step.confirms) confirmed_epoch_ = step.epoch;
+    const double begin = now();
+    const std::uint64_t from = sums.points;
+    const auto ask = [&](double share) { return keep_going(step, share, from, seconds + now() - begin); };
+    if (!runner_.run(&sums, step.points, step.epoch, ask)) return course_.cut(stopped_by_);
+    seconds += now() - begin;
+    course_.took(note(step, sums, seconds));
   }
 
-  bool keep_going(const char* phase, double share, std::uint64_t from, std::uint64_t to) {
+  double note(const CourseStep& step, const Sums& sums, double seconds) {
+    ErrorPoint point;
+    point.phase = step.phase;
+    point.rays = static_cast<std::uint64_t>(static_cast<double>(sums.points) * rays_per_point());
+    point.seconds = seconds;
+    if (plan_.request.pixels) {
+      point.relative_standard_error = picture_error(plan_, sums);
+    } else {
+      largest_error(targets_of(plan_, geometry_, sums), &point);
+    }
+    out_.errors.push_back(point);
+    return point.relative_standard_error;
+  }
+
+  bool keep_going(const CourseStep& step, double share, std::uint64_t from, double seconds) {
     if (hooks_.stop != nullptr && hooks_.stop->load()) {
-      stopped_ = true;
-      out_.ending.by = "interrupt";
+      stopped_by_ = "interrupt";
       return false;
     }
     if (time_left_s_ > 0.0 && now() - start_ > time_left_s_) {
-      out_.ending.by = "time limit";
+      stopped_by_ = "time limit";
       return false;
     }
     if (hooks_.progress) {
       Progress p;
-      p.phase = phase;
-      const double seconds = now() - phase_start_;
-      const double points = static_cast<double>(from) + share * static_cast<double>(to - from);
+      p.phase = step.phase;
+      const double points = static_cast<double>(from) + share * static_cast<double>(step.points - from);
       p.rays = static_cast<std::uint64_t>(points * rays_per_point());
-      p.rays_per_s = static_cast<double>(p.rays) * static_cast<double>(plan_.views.size()) / std::max(seconds, 1e-9);
-      p.relative_error = t95_ * last_error_;
-      const double goal = goal_points(to);
+      p.rays_per_s =
+          static_cast<double>(p.rays) * static_cast<double>(plan_.beams.views.size()) / std::max(seconds, 1e-9);
+      p.relative_error = course_.rules().t95 * course_.state().error;
+      const double goal = goal_points(step);
       p.fraction = std::min(1.0, points / goal);
       p.seconds_left = points > 0.0 ? seconds * (goal / points - 1.0) : kNan;
       hooks_.progress(p);
@@ -109,163 +177,50 @@ class PassDriver {
   }
 
   /// Points at which this phase is likely to end: the error falls at least as N^-1/2.
-  double goal_points(std::uint64_t to) const {
-    double goal = static_cast<double>(std::max(to, phase_goal_));
-    if (phase_goal_ == 0 && last_error_ > 0.0 && target_ > 0.0) {
-      const double ratio = t95_ * last_error_ / target_;
-      goal = std::max(goal, static_cast<double>(to) / 2.0 * ratio * ratio);
+  double goal_points(const CourseStep& step) const {
+    const CourseRules& rules = course_.rules();
+    const std::uint64_t known = step.confirms ? course_.state().confirm_size : rules.fixed_points;
+    double goal = static_cast<double>(std::max(step.points, known));
+    const double error = course_.state().error;
+    if (known == 0 && error > 0.0 && rules.target > 0.0) {
+      const double ratio = rules.t95 * error / rules.target;
+      goal = std::max(goal, static_cast<double>(step.points) / 2.0 * ratio * ratio);
     }
     return goal;
   }
 
   double rays_per_point() const {
-    return plan_.pixels ? 2.0 * plan_.width * plan_.height : static_cast<double>(plan_.replicates);
+    const PictureSize& size = plan_.request.picture;
+    return plan_.request.pixels ? 2.0 * size.width * size.height : static_cast<double>(plan_.request.replicates);
   }
 
-  /// Doubles *sums up to `points`; false when cut short, with *sums at the last doubling complete.
-  bool advance(const char* phase, Sums* sums, std::uint64_t points, std::uint32_t epoch) {
-    const std::uint64_t from = sums->points;
-    const auto ask = [&](double share) { return keep_going(phase, share, from, points); };
-    if (!runner_.run(sums, points, epoch, ask)) return false;
-    note(phase, *sums);
-    return true;
+  PassOutcome answer() {
+    const CourseState& state = course_.state();
+    const CourseRules& rules = course_.rules();
+    out_.sums = std::move(state.answer_confirmed ? confirmed_ : searched_);
+    // Running out of the time asked for, with nothing else asked, is no early end.
+    const bool only_time = rules.fixed_points == kMostPoints && std::string(state.ended_by) == "time limit";
+    out_.partial = state.partial && !only_time;
+    out_.target_asked = rules.target_asked;
+    out_.target_reached = rules.target_asked && state.reached;
+    out_.ending.by = state.ended_by;
+    out_.ending.half_width = rules.t95 * state.error;
+    out_.ending.rays = static_cast<std::uint64_t>(static_cast<double>(out_.sums.points) * rays_per_point());
+    out_.rays_total =
+        static_cast<std::uint64_t>(static_cast<double>(state.searched + state.confirmed) * rays_per_point());
+    return std::move(out_);
   }
 
-  void note(const char* phase, const Sums& sums) {
-    ErrorPoint point;
-    point.phase = phase;
-    point.rays = static_cast<std::uint64_t>(static_cast<double>(sums.points) * rays_per_point());
-    point.seconds = now() - phase_start_;
-    if (plan_.pixels) {
-      point.relative_standard_error = picture_error(sums);
-    } else {
-      largest_error(targets_of(plan_, geometry_, sums), &point);
-    }
-    last_error_ = point.relative_standard_error;
-    out_.errors.push_back(point);
-  }
-
-  /// Root mean square over covered pixels of the standard error, over their mean radiance.
-  double picture_error(const Sums& sums) const {
-    const std::uint64_t pixels = static_cast<std::uint64_t>(plan_.width) * plan_.height;
-    double squares = 0.0, mean = 0.0, count = 0.0;
-    for (std::size_t row = 0; row < plan_.views.size() * plan_.lanes.size(); ++row) {
-      const std::uint64_t view = row / plan_.lanes.size();
-      for (std::uint64_t p = 0; p < pixels; ++p) {
-        if (sums.hits[view * pixels + p] == 0) continue;
-        const std::uint64_t at = plan_.constants.pixels + 2 * row * pixels + p;
-        const double a = static_cast<double>(sums.values[at]), b = static_cast<double>(sums.values[at + pixels]);
-        mean += 0.5 * (a + b);
-        squares += 0.25 * (a - b) * (a - b);
-        count += 1.0;
-      }
-    }
-    return mean > 0.0 ? std::sqrt(squares / count) / (mean / count) : kNan;
-  }
-
-  void run_fixed(std::uint64_t points) {
-    begin_phase(points);
-    if (points > kMostPoints)
-      throw Error(ErrorCode::usage, fmt::format("at most {} rays per orientation can be traced with {} replicates",
-                                                kMostPoints * plan_.replicates, plan_.replicates));
-    target_ = options_.target_error_percent / 100.0;
-    out_.ending.by = options_.rays != 0 || target_ <= 0.0 ? "rays" : "samples";
-    // Large cubes take longer to read than to trace: with no target to meet, three doublings tell the error's course.
-    const std::uint64_t first = !plan_.pixels   ? kFirstPoints
-                                : target_ > 0.0 ? 1
-                                                : std::max<std::uint64_t>(1, points / 4);
-    for (std::uint64_t n = std::min(points, first); n <= points; n *= 2) {
-      if (!advance("trace", &out_.sums, n, 0)) {
-        out_.partial = true;
-        break;
-      }
-      if (target_ > 0.0 && passes() && (!plan_.pixels || n >= 4)) break;
-    }
-    finish_target(target_ > 0.0);
-  }
-
-  bool passes() const { return std::isnan(last_error_) ? zero_enough() : t95_ * last_error_ <= target_; }
-  bool zero_enough() const { return out_.errors.back().rays >= kZeroRays || plan_.pixels; }
-
-  void finish_target(bool asked) {
-    out_.target_asked = asked;
-    out_.target_reached = asked && !out_.errors.empty() && !std::isnan(last_error_) && passes();
-    if (out_.target_reached) out_.ending.by = "target";
-    if (asked && !out_.errors.empty() && std::isnan(last_error_) && passes() && !out_.partial) out_.ending.by = "zero";
-    for (const ErrorPoint& point : out_.errors) out_.rays_total = std::max(out_.rays_total, point.rays);
-  }
-
-  void begin_phase(std::uint64_t goal) {
-    phase_start_ = now();
-    phase_goal_ = goal;
-  }
-
-  /// Doubles until the target is met, then confirms once on fresh scrambles at equal size (at least `least` points);
-  /// the confirmation alone is the result. A confirmation that misses sends the search on; where the cap on rays does
-  /// not let it, that confirmation is the result: the search had met the target by luck.
-  void run_to_target() {
-    const bool asked = options_.target_error_percent > 0.0;
-    target_ = asked ? options_.target_error_percent / 100.0 : kDefaultTarget;
-    const std::uint64_t most = std::clamp<std::uint64_t>(options_.max_rays / plan_.replicates, 1, kMostPoints);
-    std::uint64_t least = 0;
-    if (!asked) least = power_of_two_above(kLeastRays / plan_.replicates / plan_.views.size());
-    Sums search, confirmed;
-    std::uint64_t spent = 0;
-    begin_phase(0);
-    double search_error = kNan;
-    bool done = false;
-    for (std::uint64_t n = std::min(kFirstPoints, power_of_two_above(most / 2 + 1)); !done; n *= 2) {
-      if (n > most) {
-        out_.ending.by = "max_rays";
-        break;
-      }
-      if (!advance("search", &search, n, 0)) break;
-      confirmed = Sums();
-      search_error = last_error_;
-      if (!passes()) continue;
-      const double search_seconds = now() - phase_start_;
-      const std::uint64_t size = std::max(n, least);
-      if (!confirm(size, &confirmed)) {
-        confirmed = Sums();
-        break;
-      }
-      spent += size;
-      done = passes();
-      begin_phase(0);
-      phase_start_ -= search_seconds;
-    }
-    if (done) out_.ending.by = std::isnan(last_error_) ? "zero" : "target";
-    const bool early = !done && std::string(out_.ending.by) != "max_rays";
-    out_.partial = early;
-    out_.target_asked = asked;
-    out_.target_reached = done && !std::isnan(last_error_);
-    out_.rays_total = (spent + search.points) * plan_.replicates;
-    // What ends early equals a run with `rays` of the search's count, so it is the search's.
-    const bool fresh = confirmed.points != 0 && !early;
-    if (!fresh) last_error_ = search_error;
-    out_.sums = fresh ? std::move(confirmed) : std::move(search);
-  }
-
-  /// Traces `size` points on the next scrambles; false where cut short.
-  bool confirm(std::uint64_t size, Sums* confirmed) {
-    begin_phase(size);
-    ++epoch_;
-    for (std::uint64_t m = std::min(kFirstPoints, size); m <= size; m *= 2) {
-      if (!advance("confirm", confirmed, m, epoch_)) return false;
-    }
-    return true;
-  }
-
-  const TraceOptions& options_;
   const Geometry& geometry_;
   const PassPlan& plan_;
   PassRunner& runner_;
   const TraceHooks& hooks_;
-  double start_, time_left_s_, t95_;
-  double phase_start_ = 0.0, target_ = 0.0, last_error_ = kNan;
-  std::uint64_t phase_goal_ = 0;
-  std::uint32_t epoch_ = 0;
-  bool stopped_ = false;
+  Course course_;
+  double start_, time_left_s_;
+  double search_seconds_ = 0.0, confirm_seconds_ = 0.0;
+  const char* stopped_by_ = "";
+  std::uint32_t confirmed_epoch_ = 0;
+  Sums searched_, confirmed_;
   PassOutcome out_;
 };
 
@@ -308,7 +263,7 @@ Result trace(const Scene& scene, Device& device, const TraceHooks& hooks) {
     result.seconds.compile += runner.compile_seconds();
     const double begin = now();
     const double left = scene.trace.time_limit_s > 0.0 ? std::max(1e-6, scene.trace.time_limit_s - spent) : 0.0;
-    const PassOutcome outcome = PassDriver(scene, geometry, plan, runner, hooks, left).run();
+    const PassOutcome outcome = PassDriver(geometry, plan, runner, scene.trace, hooks, left).run();
     spent += now() - begin;
     if (outcome.sums.points == 0) {
       result.partial = true;
@@ -325,14 +280,15 @@ Result trace(const Scene& scene, Device& device, const TraceHooks& hooks) {
     } else if (!result.target_asked) {
       ending = outcome.ending;
     }
-    const std::uint64_t rays = outcome.sums.points * plan.replicates *
-                               (plan.pixels ? static_cast<std::uint64_t>(plan.width) * plan.height : 1);
+    const PictureSize& size = plan.request.picture;
+    const std::uint64_t rays = outcome.sums.points * plan.request.replicates *
+                               (plan.request.pixels ? static_cast<std::uint64_t>(size.width) * size.height : 1);
     if (result.rays == 0) result.rays = rays;
-    result.rays_total += std::max(outcome.rays_total, rays) * plan.views.size();
+    result.rays_total += std::max(outcome.rays_total, rays) * plan.beams.views.size();
     result.digest = digest_of(result.digest, plan, outcome.sums);
     result.errors.insert(result.errors.end(), outcome.errors.begin(), outcome.errors.end());
-    add_unique(plan.kept, &result.kept);
-    add_unique(plan.left_out, &result.left_out);
+    add_unique(plan.program.kept, &result.kept);
+    add_unique(plan.program.left_out, &result.left_out);
     add_results(scene, plan, outcome, &result);
     add_unique(doubtful_claims(plan, geometry, outcome.sums), &result.warnings);
   }
@@ -360,7 +316,7 @@ std::string kernel_source(const Scene& scene, Device& device) {
   const DeviceUse use(device);
   const Geometry geometry = build_geometry(scene);
   const std::vector<PassPlan> plans = plan_passes(scene, geometry);
-  return program_source(device.impl().devices.front(), "trace.cl", plans.front().options);
+  return program_source(device.impl().devices.front(), "trace.cl", plans.front().program.options);
 }
 
 }  // namespace clray

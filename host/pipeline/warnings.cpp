@@ -7,9 +7,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pipeline/detector/intensity.hpp"
 #include "pipeline/estimate.hpp"
 #include "pipeline/portable_tables.hpp"
-#include "pipeline/sum_reader.hpp"
 #include "scene/tables.hpp"
 
 namespace clray {
@@ -42,7 +42,7 @@ constexpr double kUnseenShare = 0.10;  // of a total
 
 /// Names what few replicates make; empty where nothing does.
 std::string few_replicates(const PassPlan& plan, const Geometry& geometry, const Sums& sums) {
-  const double normal = normal_variance_of_variance(static_cast<int>(plan.replicates));
+  const double normal = normal_variance_of_variance(static_cast<int>(plan.request.replicates));
   int count = 0, doubtful = 0;
   double largest = 0.0;
   for (const Target& target : targets_of(plan, geometry, sums)) {
@@ -65,7 +65,8 @@ std::string few_replicates(const PassPlan& plan, const Geometry& geometry, const
   return fmt::format(
       "the claimed error of {} rests on few of the {} replicates (relative variance of the variance {:.2g}, normal is "
       "{:.2g}): do not trust it; trace more rays",
-      count == 1 ? "the total" : fmt::format("{} of {} totals", doubtful, count), plan.replicates, largest, normal);
+      count == 1 ? "the total" : fmt::format("{} of {} totals", doubtful, count), plan.request.replicates, largest,
+      normal);
 }
 
 /// Whether a normal may lie anywhere between those that rays met: curved shapes, and meshes so fine that many of their
@@ -89,19 +90,19 @@ double bound_of_lane(const PassPlan& plan, std::size_t lane, double cos_half_pha
 /// The largest share of a total that could lie where no ray went, beyond what its claimed error allows for; 0 for none.
 double unseen_share(const PassPlan& plan, const Sums& sums) {
   const SumReader read(plan, sums);
-  const double t95 = student_t95(static_cast<int>(plan.replicates) - 1);
+  const double t95 = student_t95(static_cast<int>(plan.request.replicates) - 1);
   double largest = 0.0;
-  for (std::size_t v = 0; v < plan.views.size(); ++v) {
-    for (std::size_t c = 0; c < plan.connections; ++c) {
-      const double *s = plan.views[v].toward, *o = plan.connection_rows[v * plan.connections + c].direction;
+  for (std::size_t v = 0; v < plan.beams.views.size(); ++v) {
+    for (std::size_t c = 0; c < plan.traits.connections; ++c) {
+      const double *s = plan.beams.views[v].toward,
+                   *o = plan.beams.connections[v * plan.traits.connections + c].direction;
       const double cos_half =
           0.5 * std::sqrt(std::pow(s[0] + o[0], 2) + std::pow(s[1] + o[1], 2) + std::pow(s[2] + o[2], 2));
-      for (std::size_t l = 0; l < plan.lanes.size(); ++l) {
-        const Estimate a =
-            estimate_mean(per_replicate(plan, [&](std::uint32_t r) { return read.total(v, l, c, r, 0); }));
+      for (std::size_t l = 0; l < plan.request.lanes.size(); ++l) {
+        const Estimate a = estimate_mean(intensities(plan, read, v, l, c));
         if (!(a.value > 0.0)) continue;
         const double share = poisson_upper95(0) * bound_of_lane(plan, l, cos_half) * read.share(v) /
-                             static_cast<double>(plan.replicates) / a.value;
+                             static_cast<double>(plan.request.replicates) / a.value;
         if (share > 2.0 * t95 * a.standard_error / a.value) largest = std::max(largest, share);
       }
     }
@@ -113,11 +114,11 @@ double unseen_share(const PassPlan& plan, const Sums& sums) {
 
 std::vector<std::string> doubtful_claims(const PassPlan& plan, const Geometry& geometry, const Sums& sums) {
   std::vector<std::string> warnings;
-  if (plan.pixels) return warnings;
+  if (plan.request.pixels) return warnings;
   const std::string few = few_replicates(plan, geometry, sums);
   if (!few.empty()) warnings.push_back(few);
-  const double rays = static_cast<double>(sums.points) * plan.replicates;
-  const double share = plan.connect && curved(geometry, rays) ? unseen_share(plan, sums) : 0.0;
+  const double rays = static_cast<double>(sums.points) * plan.request.replicates;
+  const double share = plan.traits.connect && curved(geometry, rays) ? unseen_share(plan, sums) : 0.0;
   if (share > kUnseenShare) {
     warnings.push_back(
         fmt::format("these surfaces can return a peak that the rays may have missed, with up to {:.2g} times a total: "

@@ -116,7 +116,9 @@ std::string key_fault(const std::string& of, const std::string& name, const std:
 std::string list_table(const std::string& name) {
   std::string text;
   if (std::find(kTables.begin(), kTables.end(), name) != kTables.end()) {
-    for (const TableRow& row : table(name)) text += row.name + ": " + row.meaning + "\n" + key_lines(infos(row));
+    for (const TableRow& row : table(name)) {
+      if (!row.inner) text += row.name + ": " + row.meaning + "\n" + key_lines(infos(row));
+    }
     return text;
   }
   for (const std::string& section : key_sections()) {

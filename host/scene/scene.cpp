@@ -46,9 +46,8 @@ Vec3 option_direction(const Vec3& v, const std::string& option) {
 /// A bare mesh of which only pictures are asked is lit by the Sun from over the viewer's left shoulder: light that
 /// comes from the viewer's own eye, as a laser station's does, shows no relief.
 void light_for_pictures(const SceneOptions& options, Scene* scene) {
-  const bool pictures = std::all_of(scene->detectors.begin(), scene->detectors.end(), [](const DetectorSpec& d) {
-    return table_row("detector", d.kind).side == "pixel";
-  });
+  const bool pictures = std::all_of(scene->detectors.begin(), scene->detectors.end(),
+                                    [](const DetectorSpec& d) { return table_row("detector", d.kind).pixel; });
   if (!pictures || options.source || options.observer_at_source) return;
   scene->source.kind = Source::Kind::sun;
   Observer& observer = scene->observers.front();

@@ -20,6 +20,8 @@ struct RawRow {
   const char* traits;
   const char* keys;
   const char* meaning;
+  const char* hooks = "";
+  const char* sums = "";
 };
 
 const RawRow kBrdfRows[] = {
@@ -33,7 +35,7 @@ const RawRow kShapeRows[] = {
 #undef SHAPE
 };
 const RawRow kDetectorRows[] = {
-#define DETECTOR(id, name, side, keys, meaning) {#id, name, #side, keys, meaning},
+#define DETECTOR(id, name, traits, hooks, sums, keys, meaning) {#id, name, traits, keys, meaning, hooks, sums},
 #include "detector/detector.def"
 #undef DETECTOR
 };
@@ -73,16 +75,12 @@ std::string next_word(const std::string& text, std::size_t* at) {
 }
 
 void parse_traits(const std::string& traits, TableRow* row) {
-  const std::pair<const char*, bool TableRow::*> known[] = {{"delta", &TableRow::delta},
-                                                            {"bounded", &TableRow::bounded},
-                                                            {"flat", &TableRow::flat},
-                                                            {"file", &TableRow::file}};
+  const std::pair<const char*, bool TableRow::*> known[] = {
+      {"delta", &TableRow::delta},       {"bounded", &TableRow::bounded},   {"flat", &TableRow::flat},
+      {"file", &TableRow::file},         {"beam", &TableRow::beam},         {"pixel", &TableRow::pixel},
+      {"connects", &TableRow::connects}, {"scatters", &TableRow::scatters}, {"inner", &TableRow::inner}};
   std::size_t at = 0;
   for (std::string word = next_word(traits, &at); !word.empty(); word = next_word(traits, &at)) {
-    if (word == "beam" || word == "pixel") {
-      row->side = word;
-      continue;
-    }
     const auto trait = std::find_if(std::begin(known), std::end(known), [&](const auto& k) { return k.first == word; });
     if (trait == std::end(known)) malformed(row->id, "unknown trait '" + word + "'");
     row->*trait->second = true;
@@ -114,13 +112,60 @@ TableKey parse_key(const TableRow& row, const std::string& text) {
   return key;
 }
 
+template <class Value, std::size_t N>
+Value parse_word(const TableRow& row, const std::string& word, const std::pair<const char*, Value> (&known)[N]) {
+  for (const auto& [name, value] : known) {
+    if (word == name) return value;
+  }
+  malformed(row.id, "unknown word '" + word + "' in a sum");
+}
+
+TableSum parse_sum(const TableRow& row, const std::string& text) {
+  static const std::pair<const char*, SumRows> kRows[] = {
+      {"view", SumRows::view}, {"lane", SumRows::lane}, {"connection", SumRows::connection}};
+  static const std::pair<const char*, SumScale> kScales[] = {{"weight", SumScale::weight},
+                                                             {"unit", SumScale::unit},
+                                                             {"count", SumScale::count},
+                                                             {"greatest", SumScale::greatest}};
+  static const std::pair<const char*, SumKeep> kKeeps[] = {
+      {"kept", SumKeep::row}, {"small", SumKeep::small_row}, {"item", SumKeep::number}};
+  std::size_t at = 0;
+  TableSum sum;
+  sum.name = next_word(text, &at);
+  sum.rows = parse_word(row, next_word(text, &at), kRows);
+  sum.width = next_word(text, &at);
+  std::string scale = next_word(text, &at);
+  if (const std::size_t split = scale.find('_'); split != std::string::npos) {
+    sum.keep = parse_word(row, scale.substr(0, split), kKeeps);
+    scale = scale.substr(split + 1);
+  }
+  sum.scale = parse_word(row, scale, kScales);
+  sum.unit = next_word(text, &at);
+  if (!next_word(text, &at).empty()) malformed(row.id, "a sum has a name, rows, a width, a scale and perhaps a unit");
+  return sum;
+}
+
+void parse_detector(const RawRow& raw, TableRow* row) {
+  const std::string hooks = raw.hooks, sums = raw.sums;
+  std::size_t at = 0;
+  for (std::string word = next_word(hooks, &at); !word.empty(); word = next_word(hooks, &at))
+    row->hooks.push_back(word);
+  for (at = 0; at < sums.size();) {
+    const std::size_t end = std::min(sums.find(';', at), sums.size());
+    row->sums.push_back(parse_sum(*row, sums.substr(at, end - at)));
+    at = end + 1;
+  }
+}
+
 template <std::size_t N>
 std::vector<TableRow> parse_rows(const RawRow (&raw)[N]) {
   std::vector<TableRow> rows;
   for (const RawRow& r : raw) {
     rows.push_back(parse_row(r.id, r.name, r.traits, r.keys, r.meaning));
+    parse_detector(r, &rows.back());
     for (std::size_t i = 0; i + 1 < rows.size(); ++i) {
-      if (rows[i].id == rows.back().id || rows[i].name == rows.back().name) malformed(r.id, "row occurs twice");
+      if (rows[i].id == rows.back().id || (rows[i].name == rows.back().name && !rows[i].inner))
+        malformed(r.id, "row occurs twice");
     }
   }
   return rows;
@@ -134,8 +179,8 @@ TableRow parse_row(const std::string& id, const std::string& name, const std::st
   row.id = id;
   row.name = name;
   row.meaning = meaning;
-  if (id.empty() || name.empty() || meaning.empty()) malformed(id, "needs an id, a name and a meaning");
   parse_traits(traits, &row);
+  if (id.empty() || name.empty() != row.inner || meaning.empty()) malformed(id, "needs an id, a name and a meaning");
   for (std::size_t at = 0; at < keys.size();) {
     const std::size_t end = std::min(keys.find(';', at), keys.size());
     row.keys.push_back(parse_key(row, keys.substr(at, end - at)));
@@ -200,16 +245,34 @@ const std::vector<TableRow>& table(const std::string& kind) {
 
 std::vector<std::string> row_names(const std::string& kind) {
   std::vector<std::string> names;
-  for (const TableRow& row : table(kind)) names.push_back(row.name);
+  for (const TableRow& row : table(kind)) {
+    if (!row.inner) names.push_back(row.name);
+  }
   return names;
 }
 
 int table_index(const std::string& kind, const std::string& name) {
   const std::vector<TableRow>& rows = table(kind);
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (rows[i].name == name) return static_cast<int>(i);
+    if (rows[i].name == name && !rows[i].inner) return static_cast<int>(i);
   }
   return -1;
+}
+
+double sum_width(const TableSum& sum, const std::function<double(const std::string&)>& value_of) {
+  double total = 0.0, product = 1.0;
+  for (std::size_t at = 0; at <= sum.width.size();) {
+    const std::size_t end = std::min(sum.width.find_first_of("*+", at), sum.width.size());
+    const std::string word = sum.width.substr(at, end - at);
+    double number;
+    product *= to_number(word, &number) ? number : value_of(word);
+    if (end == sum.width.size() || sum.width[end] == '+') {
+      total += product;
+      product = 1.0;
+    }
+    at = end + 1;
+  }
+  return total;
 }
 
 const TableRow& table_row(const std::string& kind, const std::string& name) {

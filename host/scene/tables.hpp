@@ -2,6 +2,7 @@
 // The rows of brdf.def, shape.def and detector.def as data: names, keys, defaults and ranges.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -21,10 +22,32 @@ struct TableKey {
   std::string meaning;
 };
 
+/// What the rows of a detector's sum belong to.
+enum class SumRows { view, lane, connection };
+/// How the numbers of a sum are scaled, and so merged: `greatest` by the greater, the others by adding.
+enum class SumScale { weight, unit, count, greatest };
+/// What a work-item keeps of a sum: nothing, a row, a row where that is few numbers, or the one number of its pixel.
+enum class SumKeep { nothing, row, small_row, number };
+
+/// One of a detector's sums, e.g. "bins connection bins+2 weight".
+struct TableSum {
+  std::string name;
+  SumRows rows = SumRows::connection;
+  std::string width;  ///< numbers a row: products and sums of numbers and names
+  SumScale scale = SumScale::weight;
+  SumKeep keep = SumKeep::nothing;
+  std::string unit;  ///< not empty: its numbers are results, in this unit
+};
+
 struct TableRow {
   std::string id;    ///< identifier: the kernel file's stem
-  std::string name;  ///< scene-file name
-  std::string side;  ///< detectors: "beam" or "pixel"
+  std::string name;  ///< scene-file name; empty: an inner detector
+  // Detectors, see the head of detector.def.
+  bool beam = false, pixel = false;         ///< where rays may start
+  bool connects = false, scatters = false;  ///< what it needs of paths
+  bool inner = false;                       ///< no scene names it
+  std::vector<std::string> hooks;
+  std::vector<TableSum> sums;
   // Traits, see the heads of the .def files.
   bool delta = false;    ///< models: an ideal reflection
   bool bounded = false;  ///< models: no weight exceeds the bound of a first bounce
@@ -37,13 +60,16 @@ struct TableRow {
 /// Rows in the order of the file, which is the number kernels know them by. kind: "brdf", "shape", "detector".
 const std::vector<TableRow>& table(const std::string& kind);
 
+/// The value of a sum's width where `value_of` knows its names. Throws Error(bug) for an unknown one.
+double sum_width(const TableSum& sum, const std::function<double(const std::string&)>& value_of);
+
 /// The row of this scene-file name, which must be there.
 const TableRow& table_row(const std::string& kind, const std::string& name);
 
 /// The row's key of this name, or null.
 const TableKey* find_key(const TableRow& row, const std::string& name);
 
-/// One row from its texts, as written in a .def file; `traits` are words, of a detector its side. Throws Error(bug)
+/// One row from its texts, as written in a .def file; `traits` are words. Throws Error(bug)
 /// where it is malformed.
 TableRow parse_row(const std::string& id, const std::string& name, const std::string& traits, const std::string& keys,
                    const std::string& meaning);
@@ -57,7 +83,7 @@ std::string range_words(const TableKey& key);
 /// Whether `value` may be given for `key`; if not, `expected` says what may ("a whole number in [1..1e7]").
 bool key_accepts(const TableKey& key, double value, std::string* expected = nullptr);
 
-/// Scene-file names of the rows, in order.
+/// Scene-file names of the rows, in order; inner detectors have none.
 std::vector<std::string> row_names(const std::string& kind);
 
 /// Row number by scene-file name, or -1.

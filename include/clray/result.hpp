@@ -101,6 +101,14 @@ struct ImageResult {
   std::vector<double> standard_error_per_sr;  ///< same shape
 };
 
+/// A sum that a detector's row states with a unit, and nothing more: its numbers, each with its error.
+struct TableResult {
+  ResultKey key;
+  std::string name;  ///< of the sum
+  std::string unit;
+  std::vector<Estimate> values;
+};
+
 /// Energy books of one variant and band where paths scatter, as power over irradiance, the mean over the orientations
 /// (PHYSICS section 4). Of a grid of Sun directions, the mean over the grid; `key.detector` then names its detector,
 /// else it is empty.
@@ -167,6 +175,7 @@ struct Result {
   std::vector<SpectrometerResult> spectrometer;
   std::vector<PressureResult> pressure;
   std::vector<ImageResult> image;  ///< of rgb and hyperspectral detectors
+  std::vector<TableResult> table;  ///< of detectors that are no more than their sums
 };
 
 /// Files that another part adds to a result, and its entry in the summary.

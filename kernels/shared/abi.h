@@ -18,7 +18,7 @@ typedef struct ClrayMaterial {
   u32 flags;        // CLRAY_MATERIAL_*
   u32 table;        // offset of the model's own table in `tables`
   u32 reflectance;  // offset of the directional-reflectance table in `tables`: count, its mu (ascending), its values
-  f64 emissivity;   // infrared, 0 unless thermal re-radiation is asked for
+  f64 emissivity;   // infrared
   f64 p[CLRAY_MATERIAL_PARAMETERS];
 } ClrayMaterial;
 
@@ -74,10 +74,8 @@ typedef struct ClrayView {
   f64 box_centre[3];      // box frame of the tree at `root`
   f64 box_scale;
   u32 root;               // of the top-level BVH (or of the only one)
-  u32 first_instance;
   u32 first_stratum, strips;  // strata of the beam; 0: its rectangle is sampled evenly
   u32 grid;               // cells along each edge of the rectangle
-  u32 padding;
   f64 share_scale;        // share of a ray = CLRAY_SLOT_PARTS·(area of its slot over a cell's)/(widths of strip and slot)·this
 } ClrayView;
 
@@ -109,15 +107,19 @@ typedef struct ClrayConnection {
   u32 padding;
 } ClrayConnection;
 
-/// A delay histogram of one connection.
-typedef struct ClrayDelay {
-  f64 first_m;         // path length (relative to the reference point) where the first bin starts
-  f64 inv_bin_per_m;   // bins per metre of path
-  u32 bins;
+/// A block of sums: the numbers of a row stand together, rows one after the other. A row belongs to a view, to a view's
+/// lane or to a lane's connection, and (but for a view's) to a replicate.
+typedef struct ClrayBlock {
+  u64 offset;  // of its first row, in `sums` or `counts`
+  u32 width;   // numbers a row
   u32 padding;
-  u64 sums;            // index in `sums` of bin "below" of slot 0, replicate 0
-  u64 hits;            // index in `hits` of the largest weight of slot 0, replicate 0
-} ClrayDelay;
+} ClrayBlock;
+
+/// A detector of a pass.
+typedef struct ClrayDetector {
+  u32 first_block;  // its first block in `blocks`: in the order of its row's sums
+  u32 settings;     // offset in `settings` of the numbers it works with
+} ClrayDetector;
 
 /// What is constant over a pass.
 typedef struct ClrayPass {
@@ -134,20 +136,7 @@ typedef struct ClrayPass {
   u32 views;
   u32 width, height;     // pixels
   u32 first_lane;        // material-table row of lane 0
-  u64 totals;            // index in `sums`
-  u64 pressure;
-  u64 books;
-  u64 pixels;
 } ClrayPass;
-
-// Energy books, one set per lane and replicate (see EnergyBooks in result.hpp).
-#define CLRAY_BOOK_INCIDENT 0
-#define CLRAY_BOOK_REFLECTED 1
-#define CLRAY_BOOK_ABSORBED 2
-#define CLRAY_BOOK_ROULETTE 3
-#define CLRAY_BOOK_TRUNCATED 4
-#define CLRAY_BOOK_UNCONNECTED 5
-#define CLRAY_BOOKS 6
 
 // Shares of energy and momentum are below this on a first bounce; larger ones go to the second accumulator.
 #define CLRAY_UNIT_LIMIT 4.0
@@ -166,8 +155,8 @@ typedef struct ClrayPass {
 
 // Sizes, asserted in C++ here and on the device by the start-up self-test.
 #define CLRAY_SIZES(X) \
-  X(ClrayMaterial, 120) X(ClrayPrimitive, 32) X(ClrayNode, 112) X(ClrayInstance, 136) X(ClrayView, 160) X(ClrayStratum, 16) \
-  X(ClrayConnection, 48) X(ClrayDelay, 40) X(ClrayPass, 136)
+  X(ClrayMaterial, 120) X(ClrayPrimitive, 32) X(ClrayNode, 112) X(ClrayInstance, 136) X(ClrayView, 152) X(ClrayStratum, 16) \
+  X(ClrayConnection, 48) X(ClrayBlock, 16) X(ClrayDetector, 8) X(ClrayPass, 104)
 #ifdef __cplusplus
 #define CLRAY_ASSERT_SIZE(type, size) static_assert(sizeof(type) == size, "abi.h: " #type);
 CLRAY_SIZES(CLRAY_ASSERT_SIZE)

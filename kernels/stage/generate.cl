@@ -25,12 +25,12 @@ static Ray stage_generate(const Buffers *g, Sampler *sampler, const Tally *tally
   ray.skip_instance = 0u;
   ray.skip_plane = 0u;
   path->length = 0.0;
-  path->delta = 0u;
   path->share = share;
-  for (u32 lane = 0; lane < CLRAY_LANES; ++lane) path->throughput[lane] = share;
-#if CLRAY_SCATTER && CLRAY_LANES > 1
-  for (u32 lane = 0; lane < CLRAY_LANES; ++lane) path->product[lane] = path->density[lane] = 1.0;
-#endif
+  path->throughput = light_even(share);
+  path->hero = 0u;
+  path->product = light_even(1.0);
+  path->density = light_even(1.0);
+  path->delta = 0u;
   return ray;
 }
 

@@ -1,25 +1,36 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stage 4, record: adds weights to totals, moments and detectors, as integers. Sums that every ray of a work-item
-// shares are kept in the item (Tally) and added once at its end.
+// Stage 6, record: every detector of the scene looks at a moment of the path and adds to its sums, as integers. A
+// detector is one file, detector/<id>.cl, with a function for each hook that its row in detector.def names; this file
+// gives them what they add with, and calls them. Hooks that no detector of the scene has call nothing.
+//   hit      (g, tally, n, bounce, surface)              a ray meets a surface
+//   connect  (g, tally, n, c, weights, length)           light toward connection c, on a path of `length` (m, relative
+//                                                        to the reference point)
+//   scatter  (g, tally, n, bounce, surface, path, s)     light goes on from a surface, or ends there
+//   escape   (g, tally, n, path, blind)                  it leaves the body; blind: from a mirror toward no cone at all
+//   end      (g, tally, n, path)                         it is cut off at the last bounce
+//   flush    (g, tally, n)                               the work-item ends and hands over what it kept
+// n: which detector of its kind. What a work-item keeps lies in tally->kept from CLRAY_KEPT_<id>_<sum> on, in the order
+// [n][lane][connection or number].
 #ifndef CLRAY_RECORD_CL
 #define CLRAY_RECORD_CL
 
-/// Slot of a view, lane and connection; every detector's arrays are [slot][replicate][…].
-static u64 record_slot(const Tally *tally, u32 lane, u32 c) {
-  return ((u64)tally->view * CLRAY_LANES + lane) * CLRAY_CONNECTIONS + c;
-}
-
-static u64 record_row(const Buffers *g, const Tally *tally, u32 lane, u32 c) {
-  return record_slot(tally, lane, c) * g->pass->replicates + tally->replicate;
-}
-
-/// Row of a view and lane, for what is not recorded per connection.
-static u64 view_row(const Buffers *g, const Tally *tally, u32 lane) {
+/// Rows of a block: of a view and lane, and of a view, lane and connection; of this replicate.
+static u64 lane_row(const Buffers *g, const Tally *tally, u32 lane) {
   return ((u64)tally->view * CLRAY_LANES + lane) * g->pass->replicates + tally->replicate;
 }
+static u64 connection_row(const Buffers *g, const Tally *tally, u32 lane, u32 c) {
+  const u64 slot = ((u64)tally->view * CLRAY_LANES + lane) * CLRAY_CONNECTIONS + c;
+  return slot * g->pass->replicates + tally->replicate;
+}
 
-/// Adds to a sum that the item keeps; what is too large for it goes straight to the second accumulator.
-static void tally_add(const Buffers *g, i64 *own, u64 at, f64 value, f64 scale, f64 limit) {
+/// Index of the first number of a row of a detector's sum.
+static u64 sum_row(const Buffers *g, u32 detector, u32 sum, u64 row) {
+  const __global ClrayBlock *block = g->blocks + g->detectors[detector].first_block + sum;
+  return block->offset + row * block->width;
+}
+
+/// Adds to a number that the item keeps; what is too large for it goes straight to the second accumulator at `at`.
+static void keep(const Buffers *g, i64 *own, u64 at, f64 value, f64 scale, f64 limit) {
   i64 wide;
   *own += to_fixed(value, scale, limit, &wide, g->counters);
 #if CLRAY_WIDE
@@ -31,104 +42,60 @@ static void add_nonzero(volatile __global i64 *sums, u64 at, i64 value) {
   if (value != 0) atomic_add_i64(sums + at, value);
 }
 
+/// Adds `count` kept numbers to the pass's sums from `at` on.
+static void hand_over(const Buffers *g, u64 at, const i64 *own, u32 count) {
+  for (u32 k = 0; k < count; ++k) add_nonzero(g->sums, at + k, own[k]);
+}
+
 #include "generated/detector_all.inc"
 
-#if CLRAY_BEAM && CLRAY_CONNECT
-/// Weights toward connection c that took a path of `length` (m, relative to the reference point).
-static void stage_record(const Buffers *g, Tally *tally, u32 c, const f64 *weights, f64 length) {
-  const f64 scale = g->pass->weight_scale, limit = g->pass->weight_limit;
-  for (u32 lane = 0; lane < CLRAY_LANES; ++lane) {
-    const f64 w = weights[lane];
-    if (w == 0.0) continue;
-    const u32 own = lane * CLRAY_CONNECTIONS + c;
-    const u64 at = g->pass->totals + 3u * record_row(g, tally, lane, c);
-    i64 *sums = tally->totals + 3u * own;
-    tally_add(g, sums, at, w, scale, limit);
-#if CLRAY_DELAYS
-    const f64 tau = (length - g->pass->path_middle_m) * g->pass->inv_path_per_m;
-    tally_add(g, sums + 1, at + 1u, w * tau, scale, limit);
-    tally_add(g, sums + 2, at + 2u, w * tau * tau, scale, limit);
-    tally->largest[own] = max(tally->largest[own], as_uint(convert_float_rtp(w)));
-    detector_delay_record(g, tally, c, lane, w, length);
-#endif
-  }
+static void record_hit(const Buffers *g, Tally *tally, u32 bounce, const Surface *surface) {
+#define CLRAY_DETECTOR_CASE(id) \
+  for (u32 n = 0; n < CLRAY_COUNT_##id; ++n) detector_##id##_hit(g, tally, n, bounce, surface);
+  CLRAY_HOOK_hit(CLRAY_DETECTOR_CASE)
+#undef CLRAY_DETECTOR_CASE
 }
-#endif
 
-#if CLRAY_PIXELS
-static void stage_record(const Buffers *g, Tally *tally, u32 c, const f64 *weights, f64 length) {
-  (void)c;
-  (void)length;
-  const u64 pixels = (u64)g->pass->width * g->pass->height;
-  const u64 pixel = tally->stream - 1u;
-  for (u32 lane = 0; lane < CLRAY_LANES; ++lane) {
-    const u64 at = g->pass->pixels + view_row(g, tally, lane) * pixels + pixel;
-    tally_add(g, tally->totals + lane, at, weights[lane], g->pass->weight_scale, g->pass->weight_limit);
-  }
+static void record_connect(const Buffers *g, Tally *tally, u32 c, const Light *weights, f64 length) {
+#define CLRAY_DETECTOR_CASE(id) \
+  for (u32 n = 0; n < CLRAY_COUNT_##id; ++n) detector_##id##_connect(g, tally, n, c, weights, length);
+  CLRAY_HOOK_connect(CLRAY_DETECTOR_CASE)
+#undef CLRAY_DETECTOR_CASE
 }
-#endif
 
-#if CLRAY_ENERGY
-/// Enters a share of the incident energy of one lane in a book.
-static void record_book(const Buffers *g, Tally *tally, u32 lane, u32 book, f64 share) {
-  const u64 at = g->pass->books + view_row(g, tally, lane) * CLRAY_BOOKS + book;
-  tally_add(g, tally->books + lane * CLRAY_BOOKS + book, at, share, g->pass->unit_scale, CLRAY_UNIT_LIMIT);
+static void record_scatter(const Buffers *g, Tally *tally, u32 bounce, const Surface *surface, const Path *path,
+                           const Scattering *s) {
+#define CLRAY_DETECTOR_CASE(id) \
+  for (u32 n = 0; n < CLRAY_COUNT_##id; ++n) detector_##id##_scatter(g, tally, n, bounce, surface, path, s);
+  CLRAY_HOOK_scatter(CLRAY_DETECTOR_CASE)
+#undef CLRAY_DETECTOR_CASE
 }
-static void record_books(const Buffers *g, Tally *tally, u32 book, const f64 *shares) {
-  for (u32 lane = 0; lane < CLRAY_LANES; ++lane) record_book(g, tally, lane, book, shares[lane]);
+
+static void record_escape(const Buffers *g, Tally *tally, const Path *path, u32 blind) {
+#define CLRAY_DETECTOR_CASE(id) \
+  for (u32 n = 0; n < CLRAY_COUNT_##id; ++n) detector_##id##_escape(g, tally, n, path, blind);
+  CLRAY_HOOK_escape(CLRAY_DETECTOR_CASE)
+#undef CLRAY_DETECTOR_CASE
 }
-#endif
+
+static void record_end(const Buffers *g, Tally *tally, const Path *path) {
+#define CLRAY_DETECTOR_CASE(id) \
+  for (u32 n = 0; n < CLRAY_COUNT_##id; ++n) detector_##id##_end(g, tally, n, path);
+  CLRAY_HOOK_end(CLRAY_DETECTOR_CASE)
+#undef CLRAY_DETECTOR_CASE
+}
 
 static void tally_clear(Tally *tally) {
   tally->started = tally->escaped = tally->killed = tally->capped = 0u;
-#if CLRAY_BEAM
-  for (u32 k = 0; k < CLRAY_LANES * CLRAY_CONNECTIONS * 3u; ++k) tally->totals[k] = 0;
-  for (u32 k = 0; k < CLRAY_LANES * CLRAY_CONNECTIONS; ++k) tally->largest[k] = 0u;
-#endif
-#if CLRAY_PIXELS
-  tally->covered = 0u;
-  for (u32 k = 0; k < CLRAY_LANES; ++k) tally->totals[k] = 0;
-#endif
-#if CLRAY_ENERGY
-  for (u32 k = 0; k < CLRAY_LANES * CLRAY_BOOKS; ++k) tally->books[k] = 0;
-#endif
-#if CLRAY_PRESSURE_PRIVATE
-  for (u32 k = 0; k < CLRAY_LANES * CLRAY_COMPONENTS * 6u; ++k) tally->pressure[k] = 0;
-#endif
+  for (u32 k = 0; k < CLRAY_KEPT; ++k) tally->kept[k] = 0;
 }
 
 /// Adds what the item kept to the pass's sums.
 static void tally_flush(const Buffers *g, const Tally *tally) {
-#if CLRAY_BEAM && CLRAY_CONNECT
-  for (u32 lane = 0; lane < CLRAY_LANES; ++lane) {
-    for (u32 c = 0; c < CLRAY_CONNECTIONS; ++c) {
-      const u32 own = lane * CLRAY_CONNECTIONS + c;
-      const u64 row = record_row(g, tally, lane, c);
-      for (u32 k = 0; k < 3u; ++k) add_nonzero(g->sums, g->pass->totals + 3u * row + k, tally->totals[3u * own + k]);
-#if CLRAY_DELAYS
-      if (tally->largest[own]) detector_delay_flush(g, c, row, tally->largest[own]);
-#endif
-    }
-  }
-#endif
-#if CLRAY_PIXELS
-  const u64 pixels = (u64)g->pass->width * g->pass->height;
-  const u64 pixel = tally->stream - 1u;
-  for (u32 lane = 0; lane < CLRAY_LANES; ++lane) {
-    const u64 row = view_row(g, tally, lane);
-    add_nonzero(g->sums, g->pass->pixels + row * pixels + pixel, tally->totals[lane]);
-  }
-  if (tally->covered) atomic_add(g->hits + (u64)tally->view * pixels + pixel, tally->covered);
-#endif
-#if CLRAY_ENERGY
-  for (u32 k = 0; k < CLRAY_LANES * CLRAY_BOOKS; ++k) {
-    const u64 row = view_row(g, tally, k / CLRAY_BOOKS);
-    add_nonzero(g->sums, g->pass->books + row * CLRAY_BOOKS + k % CLRAY_BOOKS, tally->books[k]);
-  }
-#endif
-#if CLRAY_PRESSURE_PRIVATE
-  detector_pressure_flush(g, tally);
-#endif
+#define CLRAY_DETECTOR_CASE(id) \
+  for (u32 n = 0; n < CLRAY_COUNT_##id; ++n) detector_##id##_flush(g, tally, n);
+  CLRAY_HOOK_flush(CLRAY_DETECTOR_CASE)
+#undef CLRAY_DETECTOR_CASE
   add_nonzero(g->counters, CLRAY_COUNT_STARTED, tally->started);
   add_nonzero(g->counters, CLRAY_COUNT_ESCAPED, tally->escaped);
   add_nonzero(g->counters, CLRAY_COUNT_KILLED, tally->killed);

@@ -1,27 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the four stages hand to each other, and the buffers they read and write. Options (see host/pipeline/plan.cpp)
-// are CLRAY_* macros; each is 0 or absent for what the scene does not need.
+// What the stages hand to each other, and the buffers they read and write. Options (host/pipeline/specialise.cpp) are
+// CLRAY_* macros; each is 0 or absent for what the scene does not need.
 #ifndef CLRAY_STATE_CL
 #define CLRAY_STATE_CL
 
+#include "light/light.cl"
+#include "shared/buffers.h"
+
 /// Every buffer of a pass.
 typedef struct Buffers {
-  const __global ClrayPass *pass;
-  const __global ClrayView *views;
-  const __global ClrayConnection *connections;  // [view][connection]
-  const __global ClrayNode *nodes;
-  const __global ClrayPrimitive *primitives;
-  const __global f64 *shapes;
-  const __global ClrayInstance *instances;
-  const __global ClrayMaterial *materials;      // [lane][material]
-  const __global f64 *tables;
-  const __global u32 *directions;               // Sobol, bits reversed
-  const __global ClrayDelay *delays;            // [detector][connection]
-  const __global ClrayStratum *strata;          // of the views' beams
-  volatile __global i64 *sums;
-  volatile __global i64 *wide;
-  volatile __global u32 *hits;
-  volatile __global i64 *counters;
+#define CLRAY_BUFFER(type, name) type *name;
+  CLRAY_BUFFERS(CLRAY_BUFFER)
+#undef CLRAY_BUFFER
 } Buffers;
 
 typedef struct Ray {
@@ -60,36 +50,29 @@ typedef struct Surface {
 /// (hero wavelengths, Wilkie et al. 2014). Lane l is worth f_l/((1/L)·sum_m p_m), with f and p the products of f·mu_o and
 /// of the densities along the path. Both are kept over the density of the lane that samples.
 typedef struct Path {
-  f64 length;                   // m, from the start plane through the reference point
-  f64 share;                    // of the beam (or pixel) that the path stands for
-  f64 throughput[CLRAY_LANES];  // share of the light that is still on its way
-#if CLRAY_SCATTER && CLRAY_LANES > 1
-  u32 hero;                     // the lane that samples
-  f64 product[CLRAY_LANES];     // f_l over the density of the hero
-  f64 density[CLRAY_LANES];     // p_l over the density of the hero
-#endif
-  u32 delta;                    // the last reflection was ideal: only a cone connects it
+  f64 length;        // m, from the start plane through the reference point
+  f64 share;         // of the beam (or pixel) that the path stands for
+  Light throughput;  // share of the light that is still on its way
+  u32 hero;          // the lane that samples
+  Light product;     // f_l over the density of the hero
+  Light density;     // p_l over the density of the hero
+  u32 delta;         // the last reflection was ideal: only a cone connects it
 } Path;
 
-/// Where a work-item adds: the slot of (view, lane 0, connection 0) and its replicate, and its own sums.
+/// What became of the light that a surface received.
+typedef struct Scattering {
+  Light before;  // throughput that arrived
+  Light gain;    // what roulette won or lost
+  vec3 out;      // where it goes on
+  f64 roulette;  // the number that decides it
+  u32 goes_on;   // 0: all that is left is absorbed
+} Scattering;
+
+/// Where a work-item adds: its view, replicate and pixel (1 + its number; 0: a beam), and the sums that it keeps.
 typedef struct Tally {
   u32 view, replicate, stream;
-#if CLRAY_BEAM
-  i64 totals[CLRAY_LANES * CLRAY_CONNECTIONS * 3];  // w, w·tau, w·tau²
-  u32 largest[CLRAY_LANES * CLRAY_CONNECTIONS];     // bits of the largest weight, fp32 rounded up
-#endif
-#if CLRAY_PIXELS
-  i64 totals[CLRAY_LANES];
-  u32 covered;
-#endif
-#if CLRAY_ENERGY
-  i64 books[CLRAY_LANES * CLRAY_BOOKS];
-#endif
-#if CLRAY_PRESSURE && CLRAY_COMPONENTS * CLRAY_LANES <= 4
-#define CLRAY_PRESSURE_PRIVATE 1
-  i64 pressure[CLRAY_LANES * CLRAY_COMPONENTS * 6];
-#endif
   u32 started, escaped, killed, capped;
+  i64 kept[CLRAY_KEPT];
 } Tally;
 
 #endif

@@ -84,13 +84,13 @@ TEST_CASE("slots of a cell are its whole area, once, and every filled cell has s
   for (const Case& c : cases()) {
     CAPTURE(c.name);
     const clray::PassPlan plan = plan_of(c.scene);
-    const ClrayView& view = plan.views.front();
+    const ClrayView& view = plan.beams.views.front();
     REQUIRE(view.strips > 0);
     std::map<u32, std::vector<std::pair<u32, u32>>> parts;
     for (u32 s = 0; s < view.strips; ++s) {
-      const ClrayStratum& strip = plan.strata.at(view.first_stratum + s);
+      const ClrayStratum& strip = plan.beams.strata.at(view.first_stratum + s);
       for (u32 k = 0; k < strip.b; ++k) {
-        const ClrayStratum& slot = plan.strata.at(strip.a + k);
+        const ClrayStratum& slot = plan.beams.strata.at(strip.a + k);
         parts[slot.a & CLRAY_SLOT_CELL].push_back({slot.b & 0xffffu, (slot.b >> 16) + 1});
       }
     }
@@ -113,10 +113,10 @@ TEST_CASE("the device finds the stratum of a number as a search from the first w
   for (const Case& c : cases()) {
     CAPTURE(c.name);
     const clray::PassPlan plan = plan_of(c.scene);
-    const ClrayView& view = plan.views.front();
+    const ClrayView& view = plan.beams.views.front();
     std::vector<std::pair<u32, u32>> lists = {{view.first_stratum, view.strips}};
     for (u32 s = 0; s < view.strips; s += 37)
-      lists.push_back({plan.strata.at(view.first_stratum + s).a, plan.strata.at(view.first_stratum + s).b});
+      lists.push_back({plan.beams.strata.at(view.first_stratum + s).a, plan.beams.strata.at(view.first_stratum + s).b});
     Random random(3);
     cl::Kernel kernel = kernel_of(kChoose);
     std::size_t wrong = 0;
@@ -124,17 +124,17 @@ TEST_CASE("the device finds the stratum of a number as a search from the first w
       std::vector<double> numbers;
       for (int i = 0; i < 500; ++i) numbers.push_back((random.word() + 0.5) * 0x1p-32);
       for (u32 k = 0; k < count; k += 1 + count / 100)  // the last number of a stratum, and the next
-        for (u32 bits : {plan.strata[first + k].last, plan.strata[first + k].last + 1u})
+        for (u32 bits : {plan.beams.strata[first + k].last, plan.beams.strata[first + k].last + 1u})
           numbers.push_back((bits + 0.5) * 0x1p-32);
       const cl::Buffer result = out<double>(3 * numbers.size());
-      run(kernel, numbers.size(), in(plan.strata), first, count, in(numbers), result);
+      run(kernel, numbers.size(), in(plan.beams.strata), first, count, in(numbers), result);
       const std::vector<double> found = read<double>(result, 3 * numbers.size());
       for (std::size_t i = 0; i < numbers.size(); ++i) {
         const double bits = numbers[i] * 0x1p32 - 0.5;
         u32 k = 0;
-        while (static_cast<double>(plan.strata[first + k].last) < bits) ++k;
-        const double start = k == 0 ? 0.0 : plan.strata[first + k - 1].last + 1.0;
-        const double size = plan.strata[first + k].last + 1.0 - start;
+        while (static_cast<double>(plan.beams.strata[first + k].last) < bits) ++k;
+        const double start = k == 0 ? 0.0 : plan.beams.strata[first + k - 1].last + 1.0;
+        const double size = plan.beams.strata[first + k].last + 1.0 - start;
         wrong += found[3 * i] != first + k || found[3 * i + 2] != size;
         wrong += std::fabs(found[3 * i + 1] - (bits + 0.5 - start) / size) > 1e-15;
       }
@@ -149,16 +149,16 @@ TEST_CASE("weighted, rays fill the beam evenly: the areas of rectangles in it") 
   for (const Case& c : cases()) {
     CAPTURE(c.name);
     const clray::PassPlan plan = plan_of(c.scene);
-    const ClrayView& view = plan.views.front();
+    const ClrayView& view = plan.beams.views.front();
     std::vector<std::uint8_t> filled(view.grid * view.grid, 0);
     for (u32 s = 0; s < view.strips; ++s) {
-      const ClrayStratum& strip = plan.strata.at(view.first_stratum + s);
-      for (u32 k = 0; k < strip.b; ++k) filled[plan.strata[strip.a + k].a & CLRAY_SLOT_CELL] = 1;
+      const ClrayStratum& strip = plan.beams.strata.at(view.first_stratum + s);
+      for (u32 k = 0; k < strip.b; ++k) filled[plan.beams.strata[strip.a + k].a & CLRAY_SLOT_CELL] = 1;
     }
     cl::Kernel kernel = kernel_of(kPlace);
     const std::size_t count = points.size() / 2;
     const cl::Buffer result = out<double>(3 * count);
-    run(kernel, count, in(plan.strata), in(plan.views), in(points), result);
+    run(kernel, count, in(plan.beams.strata), in(plan.beams.views), in(points), result);
     const std::vector<double> found = read<double>(result, 3 * count);
     // Rectangles whose edges are no cells' edges; their area is that of the filled cells in them.
     const double edges[6] = {0.0, 0.1003, 0.3337, 0.5419, 0.8011, 1.0};
@@ -198,7 +198,7 @@ TEST_CASE("weighted, rays fill the beam evenly: the areas of rectangles in it") 
     const double* v = view.edge_v;
     const double rectangle =
         std::sqrt((u[0] * u[0] + u[1] * u[1] + u[2] * u[2]) * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
-    const double scale = plan.area_m2.front() / rectangle / static_cast<double>(count);
+    const double scale = plan.beams.area_m2.front() / rectangle / static_cast<double>(count);
     for (int k = 0; k < 25; ++k) {
       CAPTURE(k);
       // Five standard errors of independent points, which these, one in each square of a grid, beat.

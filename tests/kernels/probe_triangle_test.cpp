@@ -57,6 +57,7 @@ __kernel void probe(const __global ClrayView *views, const __global ClrayNode *n
   ray.d = v3_load(rays + 7 * i + 3);
   ray.skip_primitive = 0xffffffffu;
   ray.skip_instance = 0u;
+  ray.skip_plane = 0u;
   Hit hit;
   intersect(&g, &ray, 0u, 0u, &hit);
   ids[i] = hit.id;
@@ -65,11 +66,13 @@ __kernel void probe(const __global ClrayView *views, const __global ClrayNode *n
 
 clray::ProgramOptions trace_options() {
   clray::ProgramOptions options;
-  for (const char* off : {"SHADOW", "SCATTER", "ENERGY", "DELTA", "ONE_SIDED", "INSTANCED", "WIDE", "ANALYTIC",
-                          "PRESSURE", "THERMAL", "PIXELS", "CELLS", "DELAYS"})
+  for (const char* off :
+       {"SHADOW", "SCATTER", "DELTA", "ONE_SIDED", "PLANES", "INSTANCED", "WIDE", "STRATA", "ANALYTIC", "PIXELS"})
     options.defines[std::string("CLRAY_") + off] = "0";
+  for (const char* hook : {"hit", "connect", "scatter", "escape", "end", "flush"})
+    options.defines[std::string("CLRAY_HOOK_") + hook + "(X)"] = "";
   for (const char* on :
-       {"TRIANGLES", "BEAM", "CONNECT", "SOBOL", "LANES", "CONNECTIONS", "MATERIALS", "COMPONENTS", "MAX_BOUNCES"})
+       {"TRIANGLES", "CONNECT", "SOBOL", "LANES", "CONNECTIONS", "MATERIALS", "COMPONENTS", "MAX_BOUNCES", "KEPT"})
     options.defines[std::string("CLRAY_") + on] = "1";
   options.defines["CLRAY_STACK"] = "96";
   options.brdfs = {0};

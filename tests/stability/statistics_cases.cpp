@@ -35,9 +35,12 @@ struct Pass {
     runner.run(&sums, points, 0, [](double) { return true; });
     return sums;
   }
+  const clray::SumBlock& block(const char* detector, std::uint32_t sum) const {
+    return plan.layout.blocks.at(clray::find_detector(plan, detector)->first_block + sum);
+  }
   /// The sum of weights of one replicate, of the only view, lane and observer.
   Sum total(const Sums& sums, std::uint32_t replicate) const {
-    return sums.values.at(plan.constants.totals + 3ull * replicate);
+    return sums.values.at(block("intensity", 0).offset + 3ull * replicate);
   }
 };
 
@@ -68,12 +71,10 @@ Outcome last_points(bool sobol) {
     const long double found = static_cast<long double>(pass.total(sums, r)) / pass.plan.constants.weight_scale;
     worst = std::max(worst, static_cast<double>(std::fabs(found - exact) / exact));
   }
-  // Row of a replicate: the largest weight, then bins from below to above the window.
-  const clray::DelayPlan& delay = pass.plan.delays.at(0);
-  std::uint64_t hits = 0;
-  for (std::uint64_t r = 0; r < kReplicates; ++r)
-    for (std::uint64_t b = 1; b < delay.bins + 3; ++b) hits += sums.hits.at(delay.hits + r * (delay.bins + 3) + b);
-  outcome.pass = worst <= kQuantumOfTotal && hits == expected_hits && sums.counters[CLRAY_COUNT_NON_FINITE] == 0;
+  const clray::SumBlock& counts = pass.block("delay", 2);  // of bins from below to above the window
+  const std::uint64_t hits = std::accumulate(sums.counts.begin() + counts.offset,
+                                             sums.counts.begin() + counts.offset + counts.size(), std::uint64_t{0});
+  outcome.pass = worst <= kQuantumOfTotal && hits == expected_hits && sums.events[CLRAY_COUNT_NON_FINITE] == 0;
   outcome.measured = fmt::format("sums off by up to {:.1e}; {} hits of {}", worst, hits, expected_hits);
   return outcome;
 }
@@ -101,7 +102,7 @@ Scene plate(bool wide) {
 }
 
 double plate_weight(const Pass& pass) {
-  return pass.plan.connection_rows.at(0).direction[2] / kPi;
+  return pass.plan.beams.connections.at(0).direction[2] / kPi;
 }
 
 /// Two drains of 2^22 points (a path may enter four times, pass_runner.cpp), each filling the accumulators to the 2^62
@@ -112,8 +113,8 @@ Outcome full() {
   pass.plan.constants.weight_limit = 2.0 * plate_weight(pass);
   pass.plan.constants.weight_scale = 0x1p40 / plate_weight(pass);
   Sums before;
-  before.values.assign(pass.plan.sums_size, static_cast<Sum>(INT64_MAX));
-  before.hits.assign(pass.plan.hits_size, 0);
+  before.values.assign(pass.plan.layout.values, static_cast<Sum>(INT64_MAX));
+  before.counts.assign(pass.plan.layout.counts, 0);
   const Sums sums = pass.run(kPoints, before);
   const Sum exact = static_cast<Sum>(INT64_MAX) + (static_cast<Sum>(kPoints) << 40);
   Outcome outcome{true, ""};
@@ -132,7 +133,7 @@ Outcome beyond(double units, bool counted) {
   pass.plan.constants.weight_scale = units / w;
   const Sums sums = pass.run(kPoints);
   const Sum found = pass.total(sums, 0) + pass.total(sums, 1);
-  const std::uint64_t overflows = sums.counters[CLRAY_COUNT_OVERFLOW];
+  const std::uint64_t overflows = sums.events[CLRAY_COUNT_OVERFLOW];
   const double each = static_cast<double>(found) / (2.0 * kPoints);
   const bool kept = std::fabs(each - units) <= 4.0 * 0x1p-53 * units && overflows == 0;
   return {counted ? found == 0 && overflows == 2 * kPoints : kept,

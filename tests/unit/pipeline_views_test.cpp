@@ -5,9 +5,9 @@
 
 #include <algorithm>
 
+#include "pipeline/beams.hpp"
 #include "pipeline/geometry.hpp"
 #include "pipeline/plan.hpp"
-#include "pipeline/views.hpp"
 #include "unit/pipeline_support.hpp"
 
 using namespace clray;
@@ -27,7 +27,7 @@ LPoint load(const double* p) {
 
 /// CHECKs the rectangle of a body with these vertices: spans their projection exactly and starts outside.
 void check_rectangle(const PassPlan& plan, const std::vector<LPoint>& vertices, double size) {
-  const ClrayView& view = plan.views.front();
+  const ClrayView& view = plan.beams.views.front();
   const LPoint s = load(view.toward), corner = load(view.corner);
   const LPoint u = load(view.edge_u), v = load(view.edge_v);
   const long double lu = std::sqrt(dot(u, u)), lv = std::sqrt(dot(v, v));
@@ -48,7 +48,7 @@ void check_rectangle(const PassPlan& plan, const std::vector<LPoint>& vertices, 
   CHECK(std::fabs(static_cast<double>(lu - (high[0] - low[0]))) < tolerance);
   CHECK(std::fabs(static_cast<double>(lv - (high[1] - low[1]))) < tolerance);
   CHECK(static_cast<double>(dot(corner, s) - high[2]) > 1e-3 * size);
-  CHECK(plan.area_m2.front() ==
+  CHECK(plan.beams.area_m2.front() ==
         doctest::Approx(static_cast<double>((high[0] - low[0]) * (high[1] - low[1]))).epsilon(64 * kEps * size));
 }
 
@@ -89,13 +89,13 @@ TEST_CASE("the beam rectangle of a turned box is the bound of its eight corners,
     // The closed form of the area: for axes a and b across s, each width is twice the sum of half_i |R^T a|_i.
     const PassPlan plan = beam_of(scene, s);
     long double area = 1.0L;
-    for (const double* edge : {plan.views[0].edge_u, plan.views[0].edge_v}) {
+    for (const double* edge : {plan.beams.views[0].edge_u, plan.beams.views[0].edge_v}) {
       LPoint a = load(edge);
       const long double l = std::sqrt(dot(a, a));
       a = turn(point_of(t.axis), -static_cast<long double>(t.angle_rad), {a[0] / l, a[1] / l, a[2] / l});
       area *= 2 * t.scale * (half[0] * std::fabs(a[0]) + half[1] * std::fabs(a[1]) + half[2] * std::fabs(a[2]));
     }
-    CHECK(plan.area_m2[0] == doctest::Approx(static_cast<double>(area)).epsilon(64 * kEps * size));
+    CHECK(plan.beams.area_m2[0] == doctest::Approx(static_cast<double>(area)).epsilon(64 * kEps * size));
   }
 }
 
@@ -104,14 +104,14 @@ TEST_CASE("for a source at +z or -z the beam's axes are x and y exactly") {
   add_shape(scene, "box", {{"size_x", 1.0}, {"size_y", 2.0}, {"size_z", 3.0}});
   for (const double z : {1.0, -1.0}) {
     const PassPlan plan = beam_of(scene, {0, 0, z});
-    const ClrayView& view = plan.views[0];
+    const ClrayView& view = plan.beams.views[0];
     CHECK(std::fabs(view.edge_u[0]) == 1.0);
     CHECK(view.edge_u[1] == 0.0);
     CHECK(view.edge_u[2] == 0.0);
     CHECK(view.edge_v[0] == 0.0);
     CHECK(std::fabs(view.edge_v[1]) == 2.0);
     CHECK(view.edge_v[2] == 0.0);
-    CHECK(plan.area_m2[0] == 2.0);
+    CHECK(plan.beams.area_m2[0] == 2.0);
   }
 }
 
@@ -122,9 +122,9 @@ TEST_CASE("Sun directions: poles once, every other elevation all around, exact a
   scene.detectors[0].parameters = {{"azimuth_steps", 8}, {"elevation_steps", 5}};
   const std::vector<PassPlan> passes = plan_passes(scene, build_geometry(scene));
   REQUIRE(passes.size() == 1);
-  REQUIRE(passes[0].grid);
-  REQUIRE(passes[0].orientations.size() == 2 + 3 * 8);
-  REQUIRE(passes[0].views.size() == 2 + 3 * 8);
+  REQUIRE(passes[0].request.grid);
+  REQUIRE(passes[0].request.orientations.size() == 2 + 3 * 8);
+  REQUIRE(passes[0].beams.views.size() == 2 + 3 * 8);
   std::size_t at = 0;
   for (int e = 0; e < 5; ++e)
     for (int a = 0; a < (e == 0 || e == 4 ? 1 : 8); ++a, ++at) {
@@ -132,10 +132,10 @@ TEST_CASE("Sun directions: poles once, every other elevation all around, exact a
       const long double azimuth = 45 * a * 3.14159265358979323846264L / 180;
       const LPoint expected{std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
                             std::sin(elevation)};
-      const Vec3 found = passes[0].orientations[at].source;
+      const Vec3 found = passes[0].request.orientations[at].source;
       for (int k = 0; k < 3; ++k) {
         CHECK(std::fabs(static_cast<double>(found[k] - expected[k])) < 4 * kEps);
-        CHECK(passes[0].views[at].toward[k] == found[k]);
+        CHECK(passes[0].beams.views[at].toward[k] == found[k]);
         if (std::fabs(expected[k]) < 1e-15L) CHECK(found[k] == 0.0);
         if (std::fabs(std::fabs(expected[k]) - 1) < 1e-15L) CHECK(std::fabs(found[k]) == 1.0);
       }

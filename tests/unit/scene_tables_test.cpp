@@ -40,8 +40,8 @@ TEST_CASE("tables: rows keep the order and the words of their file") {
   CHECK(as.keys[3].default_key == "rho");
   CHECK(table_index("shape", "mesh") == 0);
   CHECK(table_index("shape", "triangle") == -1);
-  CHECK(table("detector")[0].side == "beam");
-  CHECK(table("detector")[static_cast<std::size_t>(table_index("detector", "rgb"))].side == "pixel");
+  CHECK(table("detector")[static_cast<std::size_t>(table_index("detector", "delay"))].beam);
+  CHECK(table("detector")[static_cast<std::size_t>(table_index("detector", "rgb"))].pixel);
   CHECK_THROWS_AS(table("colour"), Error);
 }
 
@@ -85,7 +85,7 @@ TEST_CASE("tables: traits are words of a row") {
   CHECK(row.flat);
   CHECK(row.delta);
   CHECK_FALSE(row.file);
-  CHECK(parse_row("x", "x", "pixel", "", "m").side == "pixel");
+  CHECK(parse_row("x", "x", "pixel", "", "m").pixel);
   try {
     parse_row("x", "x", "flatt", "", "m");
     FAIL("expected an error");

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Views of a pass (see views.hpp). The beam is a rectangle across the direction to the source: the fp64 bound of the
+// See beams.hpp. The beam is a rectangle across the direction to the source: the fp64 bound of the
 // body; for a source at +z or -z its axes are x and y (PHYSICS section 1).
-#include "pipeline/views.hpp"
+#include "pipeline/beams.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -42,7 +42,7 @@ void set_frame(const BoxFrame& frame, ClrayView* view) {
 }
 
 /// Instances and top-level tree of one view.
-void place_parts(const Geometry& geometry, const std::vector<RigidMotion>& motions, PassPlan* plan, ClrayView* view) {
+void place_parts(const Geometry& geometry, const std::vector<RigidMotion>& motions, Beams* out, ClrayView* view) {
   std::vector<Box> boxes;
   std::vector<std::size_t> members;
   for (std::size_t p = 0; p < geometry.parts.size(); ++p) {
@@ -66,8 +66,8 @@ void place_parts(const Geometry& geometry, const std::vector<RigidMotion>& motio
     members.push_back(p);
   }
   const LinearBvh top = build_bvh(boxes);
-  view->root = static_cast<std::uint32_t>(plan->nodes.size());
-  view->first_instance = static_cast<std::uint32_t>(plan->instances.size());
+  view->root = static_cast<std::uint32_t>(out->nodes.size());
+  const auto first_instance = static_cast<std::uint32_t>(out->instances.size());
   for (const std::uint32_t position : top.order) {
     const Part& part = geometry.parts[members[position]];
     const RigidMotion& motion = motions[members[position]];
@@ -78,18 +78,18 @@ void place_parts(const Geometry& geometry, const std::vector<RigidMotion>& motio
     instance.box_scale = part.frame.scale;
     instance.root = part.root;
     instance.moved = part.hinged_component >= 0 ? 1u : 0u;
-    plan->instances.push_back(instance);
+    out->instances.push_back(instance);
   }
   for (ClrayNode node : top.nodes) {
     for (std::uint32_t& child : node.child) {
-      if (child != CLRAY_NO_CHILD) child += (child & 15u ? view->first_instance : view->root) << 4;
+      if (child != CLRAY_NO_CHILD) child += (child & 15u ? first_instance : view->root) << 4;
     }
-    plan->nodes.push_back(node);
+    out->nodes.push_back(node);
   }
   set_frame(top.frame, view);
 }
 
-void add_connection(const Vec3& direction, double acceptance_rad, bool shadow, PassPlan* plan) {
+ClrayConnection connection_to(const Vec3& direction, double acceptance_rad, bool shadow) {
   ClrayConnection row{};
   row.direction[0] = direction.x;
   row.direction[1] = direction.y;
@@ -101,11 +101,11 @@ void add_connection(const Vec3& direction, double acceptance_rad, bool shadow, P
     row.inv_solid_angle = 1.0 / (CLRAY_PI * row.acceptance_chord2);  // 2π(1 − cos a) = π·chord²
   }
   row.shadow = shadow ? 1u : 0u;
-  plan->connection_rows.push_back(row);
+  return row;
 }
 
-void beam_rectangle(const Geometry& geometry, const std::vector<RigidMotion>& motions, PassPlan* plan,
-                    ClrayView* view) {
+/// Sets where the beam's rays start; returns the area of its rectangle.
+double beam_rectangle(const Geometry& geometry, const std::vector<RigidMotion>& motions, ClrayView* view) {
   const vec3 s = v3(view->toward[0], view->toward[1], view->toward[2]);
   vec3 t, b;
   v3_frame(s, &t, &b);
@@ -117,11 +117,11 @@ void beam_rectangle(const Geometry& geometry, const std::vector<RigidMotion>& mo
   store(view->corner, v3_fma(u0, t, v3_fma(v0, b, v3_scale(start, s))));
   store(view->edge_u, v3_scale(u1 - u0, t));
   store(view->edge_v, v3_scale(v1 - v0, b));
-  plan->area_m2.push_back((u1 - u0) * (v1 - v0));
+  return (u1 - u0) * (v1 - v0);
 }
 
 /// Image axes: up is the space frame's +y as seen in the body frame (or -z/+z where the view is along it).
-void picture_axes(const Orientation& orientation, const Vec3& toward, PassPlan* plan) {
+void picture_axes(const Orientation& orientation, const Vec3& toward, PictureFrame* frame) {
   const Quaternion q = orientation.body_to_space;
   const auto to_body = [&](const Vec3& v) {
     const Vec3 u(-q.x, -q.y, -q.z);
@@ -133,37 +133,44 @@ void picture_axes(const Orientation& orientation, const Vec3& toward, PassPlan* 
   vec3 up = v3_of(to_body(Vec3(0.0, 1.0, 0.0)));
   if (std::fabs(v3_dot(up, o)) > 0.999) up = v3_of(to_body(Vec3(0.0, 0.0, v3_dot(up, o) > 0.0 ? -1.0 : 1.0)));
   const vec3 right = v3_unit(v3_cross(up, o));
-  plan->right.push_back(vec_of(right));
-  plan->up.push_back(vec_of(v3_unit(v3_cross(o, right))));
+  frame->right.push_back(vec_of(right));
+  frame->up.push_back(vec_of(v3_unit(v3_cross(o, right))));
 }
 
 /// Frames the body in every view with the same pixel size; row 0 is on top.
-void frame_pictures(const Geometry& geometry, const std::vector<std::vector<RigidMotion>>& motions, PassPlan* plan) {
-  std::vector<std::array<double, 5>> extents;  // centre right, centre up, half right, half up, nearest
+void frame_pictures(const Geometry& geometry, const std::vector<std::vector<RigidMotion>>& motions,
+                    const Vec3& reference, const PictureSize& size, Beams* out) {
+  struct Extent {
+    double right, up, nearest;  // the middle, and the body's end toward the observer
+  };
+  PictureFrame& frame = out->frame;
+  std::vector<Extent> extents;
   double half_right = 0.0, half_up = 0.0;
-  for (std::size_t v = 0; v < plan->views.size(); ++v) {
+  for (std::size_t v = 0; v < out->views.size(); ++v) {
     double a, b, c, d, e, f;
-    body_extent(geometry, motions[v], point_of(plan->right[v]), &a, &b);
-    body_extent(geometry, motions[v], point_of(plan->up[v]), &c, &d);
-    const double* o = plan->views[v].toward;
+    body_extent(geometry, motions[v], point_of(frame.right[v]), &a, &b);
+    body_extent(geometry, motions[v], point_of(frame.up[v]), &c, &d);
+    const double* o = out->views[v].toward;
     body_extent(geometry, motions[v], {{o[0], o[1], o[2]}}, &e, &f);
-    extents.push_back({{0.5 * (a + b), 0.5 * (c + d), 0.5 * (b - a), 0.5 * (d - c), f}});
+    extents.push_back({0.5 * (a + b), 0.5 * (c + d), f});
     half_right = std::max(half_right, 0.5 * (b - a));
     half_up = std::max(half_up, 0.5 * (d - c));
   }
-  const double width = plan->width, height = plan->height;
-  plan->pixel_m = kPictureMargin * 2.0 * std::max({half_right / width, half_up / height, 1e-6 * geometry.radius});
-  for (std::size_t v = 0; v < plan->views.size(); ++v) {
-    ClrayView& view = plan->views[v];
-    const vec3 right = v3_of(plan->right[v]), up = v3_of(plan->up[v]);
+  const double width = size.width, height = size.height;
+  frame.pixel_m = kPictureMargin * 2.0 * std::max({half_right / width, half_up / height, 1e-6 * geometry.radius});
+  for (std::size_t v = 0; v < out->views.size(); ++v) {
+    ClrayView& view = out->views[v];
+    const vec3 right = v3_of(frame.right[v]), up = v3_of(frame.up[v]), origin = v3_of(reference);
     const vec3 o = v3(view.toward[0], view.toward[1], view.toward[2]);
-    const double left = extents[v][0] - 0.5 * width * plan->pixel_m;
-    const double top = extents[v][1] + 0.5 * height * plan->pixel_m;
-    const double start = extents[v][4] + std::ldexp(geometry.radius, -4);
+    frame.centre_right_m.push_back(extents[v].right - v3_dot(right, origin));
+    frame.centre_up_m.push_back(extents[v].up - v3_dot(up, origin));
+    const double left = extents[v].right - 0.5 * width * frame.pixel_m;
+    const double top = extents[v].up + 0.5 * height * frame.pixel_m;
+    const double start = extents[v].nearest + std::ldexp(geometry.radius, -4);
     store(view.corner, v3_fma(left, right, v3_fma(top, up, v3_scale(start, o))));
-    store(view.edge_u, v3_scale(width * plan->pixel_m, right));
-    store(view.edge_v, v3_scale(-height * plan->pixel_m, up));
-    plan->area_m2.push_back(plan->pixel_m * plan->pixel_m);
+    store(view.edge_u, v3_scale(width * frame.pixel_m, right));
+    store(view.edge_v, v3_scale(-height * frame.pixel_m, up));
+    out->area_m2.push_back(frame.pixel_m * frame.pixel_m);
   }
 }
 
@@ -184,50 +191,59 @@ std::vector<RigidMotion> motions_of(const Scene& scene, const Geometry& geometry
   return motions;
 }
 
-void build_views(const Scene& scene, const Geometry& geometry, PassPlan* plan) {
-  plan->nodes = geometry.nodes;
+Beams build_beams(const Scene& scene, const Geometry& geometry, const PassRequest& request) {
+  Beams out;
+  out.nodes = geometry.nodes;
   const bool instanced =
       !scene.trace.specialise || std::any_of(geometry.parts.begin(), geometry.parts.end(),
                                              [](const Part& part) { return part.hinged_component >= 0; });
   std::vector<std::vector<RigidMotion>> all_motions;
-  for (const Orientation& orientation : plan->orientations) {
+  for (const Orientation& orientation : request.orientations) {
     const std::vector<RigidMotion> motions = motions_of(scene, geometry, orientation);
+    const auto observer = static_cast<std::size_t>(request.observers.front());
+    const Vec3& toward = request.pixels ? orientation.observers[observer] : orientation.source;
     ClrayView view{};
-    const Vec3& toward = plan->pixels ? orientation.observers[plan->pixel_observer] : orientation.source;
     store(view.toward, v3_of(toward));
     view.root = geometry.parts[0].root;
     set_frame(geometry.parts[0].frame, &view);
-    if (instanced) place_parts(geometry, motions, plan, &view);
-    if (plan->pixels) {
-      const bool monostatic =
-          at_source(scene.observers[plan->pixel_observer], scene.source) && !scene.trace.force_bistatic;
-      add_connection(orientation.source, 0.0, !monostatic, plan);
-      picture_axes(orientation, toward, plan);
+    if (instanced) place_parts(geometry, motions, &out, &view);
+    if (request.pixels) {
+      const bool monostatic = at_source(scene.observers[observer], scene.source) && !scene.trace.force_bistatic;
+      out.connections.push_back(connection_to(orientation.source, 0.0, !monostatic));
+      picture_axes(orientation, toward, &out.frame);
     } else {
-      for (std::uint32_t c = 0; c < plan->connections; ++c) {
-        const Observer& observer = scene.observers[c];
-        const bool shadow = !(orientation.observers[c] == orientation.source) || scene.trace.force_bistatic;
-        add_connection(orientation.observers[c], observer.acceptance_rad, shadow, plan);
+      for (const int o : request.observers) {
+        const Vec3& direction = orientation.observers[static_cast<std::size_t>(o)];
+        const bool shadow = !(direction == orientation.source) || scene.trace.force_bistatic;
+        out.connections.push_back(
+            connection_to(direction, scene.observers[static_cast<std::size_t>(o)].acceptance_rad, shadow));
       }
-      beam_rectangle(geometry, motions, plan, &view);
+      out.area_m2.push_back(beam_rectangle(geometry, motions, &view));
     }
-    plan->views.push_back(view);
+    out.views.push_back(view);
     all_motions.push_back(motions);
   }
-  if (plan->pixels) frame_pictures(geometry, all_motions, plan);
+  if (request.pixels) frame_pictures(geometry, all_motions, scene.reference_point, request.picture, &out);
+  return out;
 }
 
-void path_extent(const Scene& scene, const Geometry& geometry, const PassPlan& plan, std::size_t v, std::uint32_t c,
-                 double* low, double* high) {
-  const double* s = plan.views[v].toward;
-  const double* o = plan.connection_rows[v * plan.connections + c].direction;
-  const Point sum{{s[0] + o[0], s[1] + o[1], s[2] + o[2]}};
-  double a, b;
-  body_extent(geometry, motions_of(scene, geometry, plan.orientations[v]), sum, &a, &b);
+PathRange path_range(const Scene& scene, const Geometry& geometry, const PassRequest& request, const Beams& beams) {
+  const std::size_t connections = beams.connections.size() / beams.views.size();
+  PathRange range{std::vector<double>(connections, 1e300), std::vector<double>(connections, -1e300)};
   const Vec3& r = scene.reference_point;
-  const double reference = std::fma(sum[0], r.x, std::fma(sum[1], r.y, sum[2] * r.z));
-  *low = reference - b;
-  *high = reference - a;
+  for (std::size_t v = 0; v < beams.views.size(); ++v) {
+    const std::vector<RigidMotion> motions = motions_of(scene, geometry, request.orientations[v]);
+    for (std::size_t c = 0; c < connections; ++c) {
+      const double *s = beams.views[v].toward, *o = beams.connections[v * connections + c].direction;
+      const Point sum{{s[0] + o[0], s[1] + o[1], s[2] + o[2]}};
+      double a, b;
+      body_extent(geometry, motions, sum, &a, &b);
+      const double reference = std::fma(sum[0], r.x, std::fma(sum[1], r.y, sum[2] * r.z));
+      range.low_m[c] = std::min(range.low_m[c], reference - b);
+      range.high_m[c] = std::max(range.high_m[c], reference - a);
+    }
+  }
+  return range;
 }
 
 }  // namespace clray

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+// See course.hpp. A search doubles until the target is met, then confirms once on fresh scrambles at equal size; the
+// confirmation alone is the result. One that misses sends the search on; where the cap on rays does not let it, that
+// confirmation is the result: the search had met the target by luck.
+#include "pipeline/course.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace clray {
+namespace {
+
+std::uint64_t power_of_two_above(std::uint64_t value) {
+  std::uint64_t p = 1;
+  while (p < value) p *= 2;
+  return p;
+}
+
+}  // namespace
+
+Course::Course(const CourseRules& rules) : rules_(rules) {
+  if (rules.fixed_points != 0) {
+    state_.phase = CourseState::fixed;
+    state_.points = std::min(rules.fixed_points, rules.first_points);
+  } else {
+    state_.points = std::min(rules.first_points, power_of_two_above(rules.most_points / 2 + 1));
+    if (state_.points > rules.most_points) end("max_rays", false);
+  }
+}
+
+std::optional<CourseStep> Course::next() const {
+  switch (state_.phase) {
+    case CourseState::fixed:
+      return CourseStep{"trace", 0, state_.points, false};
+    case CourseState::search:
+      return CourseStep{"search", 0, state_.points, false};
+    case CourseState::confirm:
+      return CourseStep{"confirm", state_.epoch, state_.points, true};
+    case CourseState::over:
+      break;
+  }
+  return std::nullopt;
+}
+
+bool Course::passes() const {
+  if (std::isnan(state_.error)) return state_.points >= rules_.enough_points;
+  return rules_.t95 * state_.error <= rules_.target;
+}
+
+void Course::end(const char* by, bool reached) {
+  state_.phase = CourseState::over;
+  state_.ended_by = by;
+  state_.reached = reached;
+}
+
+void Course::took(double relative_error) {
+  CourseState& s = state_;
+  s.error = relative_error;
+  const bool pass = rules_.target > 0.0 && passes();
+  const char* const met = std::isnan(relative_error) ? "zero" : "target";
+  if (s.phase == CourseState::fixed) {
+    s.searched = s.points;
+    if (pass && (s.points >= rules_.least_to_stop || 2 * s.points > rules_.fixed_points)) {
+      end(met, !std::isnan(relative_error));
+    } else if (2 * s.points > rules_.fixed_points) {
+      end(rules_.fixed_end, false);
+    }
+    s.points *= 2;
+  } else if (s.phase == CourseState::search) {
+    s.searched = s.points;
+    s.search_error = relative_error;
+    s.answer_confirmed = false;
+    if (pass) {
+      s.phase = CourseState::confirm;
+      s.confirm_size = std::max(s.points, rules_.least_points);
+      ++s.epoch;
+      s.points = std::min(rules_.first_points, s.confirm_size);
+    } else {
+      s.points *= 2;
+      if (s.points > rules_.most_points) end("max_rays", false);
+    }
+  } else if (s.points < s.confirm_size) {
+    s.points *= 2;
+  } else {
+    s.confirmed += s.confirm_size;
+    s.answer_confirmed = true;
+    if (pass) return end(met, !std::isnan(relative_error));
+    s.phase = CourseState::search;
+    s.points = 2 * s.searched;
+    if (s.points > rules_.most_points) end("max_rays", false);
+  }
+}
+
+void Course::cut(const char* by) {
+  // What ends early equals a run with `rays` of the search's count, so it is the search's.
+  if (state_.phase == CourseState::confirm || state_.phase == CourseState::search) state_.error = state_.search_error;
+  state_.answer_confirmed = false;
+  state_.partial = true;
+  end(by, false);
+}
+
+}  // namespace clray

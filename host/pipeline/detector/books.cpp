@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// Energy books on the host: the mean over the views, per variant and band (PHYSICS section 4).
+#include "pipeline/detector/books.hpp"
+
+#include <algorithm>
+
+#include "pipeline/detector/room.hpp"
+#include "pipeline/detector/rooms.hpp"
+#include "pipeline/estimate.hpp"
+
+namespace clray {
+namespace {
+
+EnergyBooks books_of(const RoomResults& x, std::size_t l) {
+  EnergyBooks e;
+  e.key.variant = x.plan.request.lanes[l].variant;
+  e.key.band = x.plan.request.lanes[l].band_name;
+  if (x.plan.request.grid) {
+    const DetectorSpec& owner = x.scene.detectors[static_cast<std::size_t>(x.plan.request.detectors.front())];
+    e.key.detector = owner.name.empty() ? owner.kind : owner.name;
+  }
+  Estimate* entries[CLRAY_BOOKS] = {&e.incident_m2, &e.reflected_m2, &e.absorbed_m2,
+                                    &e.roulette_m2, &e.truncated_m2, &e.unconnected_specular_m2};
+  const std::size_t views = x.plan.layout.shape.views;
+  for (int which = 0; which < CLRAY_BOOKS; ++which) {
+    std::vector<double> mean(x.plan.request.replicates, 0.0);
+    for (std::size_t v = 0; v < views; ++v) {
+      const std::vector<double> one = book(x.plan, x.read, v, l, which);
+      for (std::size_t r = 0; r < mean.size(); ++r) mean[r] += one[r];
+    }
+    for (double& m : mean) m /= static_cast<double>(views);
+    *entries[which] = estimate_mean(mean);
+  }
+  return e;
+}
+
+void books_results(const RoomResults& x) {
+  if (x.plan.request.pixels) return;  // their rays are not the light's
+  for (std::size_t l = 0; l < x.plan.layout.shape.lanes; ++l) {
+    EnergyBooks e = books_of(x, l);
+    if (e.incident_m2.value > 0.0) {
+      double& fraction = x.out.diagnostics.truncated_energy_fraction;
+      fraction = std::max(fraction, e.truncated_m2.value / e.incident_m2.value);
+    }
+    x.out.energy.push_back(std::move(e));
+  }
+}
+
+// No target of a run is about the books.
+void no_targets(const PassPlan&, const PassDetector&, const SumReader&, const Geometry&, std::vector<Target>*) {}
+
+}  // namespace
+
+const DetectorRoom kBooksRoom{"books", nullptr, nullptr, no_targets, books_results};
+
+}  // namespace clray

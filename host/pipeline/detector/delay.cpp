@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+// The delay camera on the host: its window, moments of delay, bins with their errors and bounds (PHYSICS sections 1,
+// 6).
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "clray/error.hpp"
+#include "pipeline/detector/intensity.hpp"
+#include "pipeline/detector/room.hpp"
+#include "pipeline/detector/rooms.hpp"
+#include "pipeline/estimate.hpp"
+
+namespace clray {
+namespace {
+
+constexpr double kLightSpeed = 299792458.0;
+constexpr double kNsToMetres = 0.299792458;
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+// Its blocks, in the order of its row, and its settings (kernels/detector/delay.cl).
+enum { kBins, kLargest, kHits };
+enum { kSettingBins = 0, kSettingFirst = 1, kSettingPerMetre = 2, kSettingBin = 3, kSettingStride = 3 };
+
+[[noreturn]] void refuse(const DetectorSpec& spec, const std::string& what) {
+  throw Error(ErrorCode::input, what, "detector " + spec.name);
+}
+
+/// Bins, then first edge (m), bins per metre and width (m) of each connection. The automatic window is the extent of
+/// one bounce and a margin, one for all orientations.
+std::vector<double> delay_settings(const RoomContext& x) {
+  double bins = detector_value(x.spec, "bins");
+  const double asked_bins = bins;
+  const double start_ns = detector_value(x.spec, "start_ns"), stop_ns = detector_value(x.spec, "stop_ns");
+  const double bin_ps = detector_value(x.spec, "bin_ps");
+  const double least = std::ldexp(2.0 * x.geometry.radius, -10);
+  std::vector<double> settings{0.0};
+  for (std::size_t c = 0; c < x.plan.paths.low_m.size(); ++c) {
+    const double low = x.plan.paths.low_m[c], high = x.plan.paths.high_m[c];
+    const double margin = std::max((high - low) / std::max(1.0, asked_bins - 2.0), least);
+    const double first = std::isnan(start_ns) ? low - margin : start_ns * kNsToMetres;
+    const double last = std::isnan(stop_ns) ? high + margin : stop_ns * kNsToMetres;
+    if (!(last > first))
+      refuse(x.spec, fmt::format("the delay window is empty: it starts at {} ns and stops at {} ns",
+                                 first / kNsToMetres, last / kNsToMetres));
+    double bin = (last - first) / asked_bins;
+    if (!std::isnan(bin_ps)) {
+      bin = bin_ps * 1e-3 * kNsToMetres;
+      const double count = std::ceil((last - first) / bin);
+      if (!(count <= 1e7))
+        refuse(x.spec, fmt::format("bin_ps = {} makes {:.3g} bins, at most 1e7 expected", bin_ps, count));
+      bins = std::max(c == 0 ? 1.0 : bins, count);
+    }
+    settings.insert(settings.end(), {first, 1.0 / bin, bin});
+  }
+  settings[kSettingBins] = bins;
+  return settings;
+}
+
+std::optional<PathBins> delay_path_bins(const std::vector<double>& settings) {
+  return PathBins{settings[kSettingFirst], settings[kSettingBin]};
+}
+
+/// Mean and width of delay: ratios of pooled sums, errors by jackknife.
+void delay_moments(const PassPlan& plan, const SumReader& read, std::size_t v, std::size_t l, std::size_t c,
+                   DelayResult* out) {
+  double pooled[3] = {};
+  for (int k = 0; k < 3; ++k) {
+    for (std::uint32_t r = 0; r < plan.request.replicates; ++r)
+      pooled[k] += intensity_moment(plan, read, v, l, c, r, k);
+  }
+  const double to_s = plan.scales.path_half_m / kLightSpeed;
+  const double middle_s = plan.scales.path_middle_m / kLightSpeed;
+  const auto mean_of = [&](const double* s) { return middle_s + s[1] / s[0] * to_s; };
+  const auto width_of = [&](const double* s) {
+    const double mean = s[1] / s[0];
+    return std::sqrt(std::max(0.0, s[2] / s[0] - mean * mean)) * to_s;
+  };
+  std::vector<double> means, widths;
+  for (std::uint32_t r = 0; r < plan.request.replicates; ++r) {
+    double rest[3];
+    for (int k = 0; k < 3; ++k) rest[k] = pooled[k] - intensity_moment(plan, read, v, l, c, r, k);
+    means.push_back(mean_of(rest));
+    widths.push_back(width_of(rest));
+  }
+  out->mean_delay_s = estimate_jackknife(mean_of(pooled), means);
+  out->rms_width_s = estimate_jackknife(width_of(pooled), widths);
+}
+
+double largest_weight(const RoomResults& x, std::size_t v, std::size_t l, std::size_t c) {
+  float largest = 0.0f;
+  for (std::uint32_t r = 0; r < x.plan.request.replicates; ++r) {
+    const auto bits = static_cast<std::uint32_t>(x.read.count(x.detector.first_block + kLargest, v, l, c, r, 0));
+    float value;
+    std::memcpy(&value, &bits, sizeof value);
+    largest = std::max(largest, value);
+  }
+  return largest;
+}
+
+void delay_bins(const RoomResults& x, std::size_t v, std::size_t l, std::size_t c, DelayResult* out) {
+  const std::uint32_t replicates = x.plan.request.replicates;
+  const double count = replicates, largest = largest_weight(x, v, l, c), share = x.read.share(v) / count;
+  const std::uint64_t bins = x.plan.layout.blocks[x.detector.first_block + kBins].width - 2;
+  const auto sum = [&](std::uint32_t r, std::uint64_t b) {
+    return x.read.value(x.detector.first_block + kBins, v, l, c, r, b);
+  };
+  for (std::uint64_t b = 1; b <= bins; ++b) {
+    double mean = 0.0, squares = 0.0;
+    std::uint64_t hits = 0;
+    std::uint32_t replicates_hit = 0;
+    for (std::uint32_t r = 0; r < replicates; ++r) {
+      mean += sum(r, b);
+      const std::uint64_t h = x.read.count(x.detector.first_block + kHits, v, l, c, r, b);
+      hits += h;
+      replicates_hit += h != 0;
+    }
+    mean /= count;
+    for (std::uint32_t r = 0; r < replicates; ++r) squares += (sum(r, b) - mean) * (sum(r, b) - mean);
+    const bool resolved = hits >= 10 && 2 * replicates_hit >= replicates;
+    out->bin_m2_per_sr.push_back(mean);
+    out->bin_standard_error.push_back(std::sqrt(squares / (count * (count - 1.0))));
+    out->hits.push_back(hits);
+    out->resolved.push_back(resolved);
+    out->bin_upper_bound.push_back(resolved ? 0.0 : largest * poisson_upper95(hits) * share);
+  }
+  for (std::uint32_t r = 0; r < replicates; ++r) {
+    out->below_m2_per_sr += sum(r, 0) / count;
+    out->above_m2_per_sr += sum(r, bins + 1) / count;
+  }
+}
+
+void delay_record(const RoomResults& x, std::size_t v, std::size_t l, std::size_t c) {
+  DelayResult d;
+  d.key = x.key(v, l, c);
+  d.intensity_m2_per_sr = estimate_mean(intensities(x.plan, x.read, v, l, c));
+  const double total = d.intensity_m2_per_sr.value;
+  if (total > 0.0) {
+    delay_moments(x.plan, x.read, v, l, c, &d);
+  } else {
+    for (Estimate* e : {&d.mean_delay_s, &d.rms_width_s})
+      e->value = e->standard_error = e->relative_variance_of_variance = kNan;
+  }
+  d.first_bin_start_s = x.detector.settings[kSettingFirst + kSettingStride * c] / kLightSpeed;
+  d.bin_width_s = x.detector.settings[kSettingBin + kSettingStride * c] / kLightSpeed;
+  delay_bins(x, v, l, c, &d);
+  if (total > 0.0) {
+    Diagnostics& g = x.out.diagnostics;
+    g.below_window_fraction = std::max(g.below_window_fraction, d.below_m2_per_sr / total);
+    g.above_window_fraction = std::max(g.above_window_fraction, d.above_m2_per_sr / total);
+  }
+  x.out.delay.push_back(std::move(d));
+}
+
+void delay_results(const RoomResults& x) {
+  const SumShape& shape = x.plan.layout.shape;
+  for (std::size_t v = 0; v < shape.views; ++v) {
+    for (std::size_t l = 0; l < shape.lanes; ++l) {
+      for (std::size_t c = 0; c < shape.connections; ++c) delay_record(x, v, l, c);
+    }
+  }
+}
+
+/// What delay and spectrometer say to a run's target is A of every connection.
+void intensity_targets(const PassPlan& plan, const PassDetector&, const SumReader& read, const Geometry&,
+                       std::vector<Target>* targets) {
+  const SumShape& shape = plan.layout.shape;
+  for (std::size_t v = 0; v < shape.views; ++v) {
+    for (std::size_t l = 0; l < shape.lanes; ++l) {
+      for (std::size_t c = 0; c < shape.connections; ++c) {
+        Target t;
+        t.components.push_back(intensities(plan, read, v, l, c));
+        targets->push_back(std::move(t));
+      }
+    }
+  }
+}
+
+}  // namespace
+
+const DetectorRoom kDelayRoom{"delay", delay_settings, delay_path_bins, nullptr, delay_results};
+const DetectorRoom kIntensityRoom{"intensity", nullptr, nullptr, intensity_targets, nullptr};
+
+}  // namespace clray

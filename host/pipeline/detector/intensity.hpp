@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the inner detector `intensity` found, for those that read it: A of a connection, and its moments of delay.
+#pragma once
+
+#include "pipeline/sum_reader.hpp"
+
+namespace clray {
+
+/// Moment k (of w, w·tau, w·tau²) of replicate r, m²/sr; the pass has connections.
+inline double intensity_moment(const PassPlan& plan, const SumReader& read, std::size_t v, std::size_t l, std::size_t c,
+                               std::uint32_t r, int k) {
+  return read.value(find_detector(plan, "intensity")->first_block, v, l, c, r, static_cast<std::uint64_t>(k));
+}
+
+/// A per replicate, m²/sr.
+inline std::vector<double> intensities(const PassPlan& plan, const SumReader& read, std::size_t v, std::size_t l,
+                                       std::size_t c) {
+  return per_replicate(plan, [&](std::uint32_t r) { return intensity_moment(plan, read, v, l, c, r, 0); });
+}
+
+}  // namespace clray

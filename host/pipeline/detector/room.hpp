@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the host knows of a detector beyond the sums that its row states: settings for the device, bins that the beam's
+// strata follow, totals that a run's target is about, and results that are more than a table of its numbers. Every
+// function has a default; a detector that needs none of them has no file here.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pipeline/outcome.hpp"
+#include "pipeline/plan.hpp"
+#include "pipeline/sum_reader.hpp"
+
+namespace clray {
+
+/// What a room is asked with: the scene's words for the detector, and the plan as far as it is made.
+struct RoomContext {
+  const Scene& scene;
+  const DetectorSpec& spec;
+  const PassPlan& plan;
+  const Geometry& geometry;
+};
+
+/// One detector of a pass with all its sums.
+struct RoomResults {
+  const Scene& scene;
+  const PassPlan& plan;
+  const PassDetector& detector;
+  const SumReader& read;
+  Result& out;
+
+  const DetectorSpec& spec() const { return scene.detectors[static_cast<std::size_t>(detector.index)]; }
+  /// The key of a record: observer c of the pass (names are empty where there is only one), view v and lane l.
+  ResultKey key(std::size_t v, std::size_t l, std::size_t c) const;
+  /// The same without an observer.
+  ResultKey key(std::size_t v, std::size_t l) const;
+};
+
+struct DetectorRoom {
+  const char* id;
+  std::vector<double> (*settings)(const RoomContext&) = nullptr;               ///< default: the keys of its row
+  std::optional<PathBins> (*path_bins)(const std::vector<double>&) = nullptr;  ///< of its settings; default: none
+  void (*targets)(const PassPlan&, const PassDetector&, const SumReader&, const Geometry&,
+                  std::vector<Target>*) = nullptr;  ///< default: every number with a unit
+  void (*results)(const RoomResults&) = nullptr;    ///< default: a table of every number with a unit
+};
+
+/// The room of a row of detector.def; one with every default where it has none.
+const DetectorRoom& room_of(const std::string& id);
+
+}  // namespace clray

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which passes a scene takes: detectors that can share rays share a pass, and so do lanes (variants and bands).
+#include <algorithm>
+#include <cmath>
+
+#include "pipeline/beams.hpp"
+#include "pipeline/plan.hpp"
+#include "scene/motion.hpp"
+#include "scene/tables.hpp"
+
+namespace clray {
+namespace {
+
+/// Wavelengths of a picture traced at once: what a hit costs is paid once for all of them. Their sums stay within a
+/// quarter of a GiB, whatever the device, so that the digest is the same on all; the rest goes in further chunks.
+std::size_t lanes_together(const DetectorSpec& spec, std::size_t views) {
+  const double pixels = detector_value(spec, "width") * detector_value(spec, "height") * static_cast<double>(views);
+  const double lanes = 0x1p28 / (pixels * 2.0 * sizeof(std::int64_t));
+  return static_cast<std::size_t>(std::min(64.0, std::max(1.0, lanes)));
+}
+
+/// Directions of the Sun on a grid, body frame: elevations (from the xy plane) from -90 to 90 degrees inclusive,
+/// azimuths (from +x toward +y) from 0 to 360 exclusive, one at the poles. Observers stay where the motion starts; one
+/// at the source goes along with it.
+std::vector<Orientation> sun_grid(const Scene& scene, int azimuths, int elevations) {
+  const Orientation start = orientations(scene).front();
+  std::vector<Orientation> grid;
+  for (int e = 0; e < elevations; ++e) {
+    const double elevation = -90.0 + 180.0 * e / (elevations - 1);
+    const bool pole = e == 0 || e == elevations - 1;
+    for (int a = 0; a < (pole ? 1 : azimuths); ++a) {
+      Orientation orientation = start;
+      orientation.source = direction_from_degrees(360.0 * a / azimuths, elevation);
+      for (std::size_t o = 0; o < scene.observers.size(); ++o) {
+        if (at_source(scene.observers[o], scene.source)) orientation.observers[o] = orientation.source;
+      }
+      grid.push_back(orientation);
+    }
+  }
+  return grid;
+}
+
+/// The requests of a scene, detector by detector.
+class Requests {
+ public:
+  explicit Requests(const Scene& scene) : scene_(scene), lanes_(lanes_of(scene)), instants_(orientations(scene)) {}
+
+  std::vector<PassRequest> all() {
+    for (std::size_t d = 0; d < scene_.detectors.size(); ++d) {
+      if (!is_grid(d)) next_orientation_ = instants_.size();
+    }
+    beam();
+    for (std::size_t d = 0; d < scene_.detectors.size(); ++d) {
+      if (is_grid(d)) grid(d);
+    }
+    for (std::size_t d = 0; d < scene_.detectors.size(); ++d) {
+      if (row(d).pixel) picture(d);
+    }
+    return std::move(requests_);
+  }
+
+ private:
+  const TableRow& row(std::size_t d) const { return table_row("detector", scene_.detectors[d].kind); }
+  bool is_grid(std::size_t d) const {
+    return find_key(row(d), "azimuth_steps") != nullptr && detector_value(scene_.detectors[d], "azimuth_steps") > 0.0;
+  }
+
+  PassRequest request(const char* phase) const {
+    PassRequest r;
+    r.phase = phase;
+    r.orientations = instants_;
+    r.replicates = static_cast<std::uint32_t>(scene_.trace.replicates);
+    return r;
+  }
+
+  // Every detector whose rays start at the beam under the scene's own light.
+  void beam() {
+    PassRequest r = request("trace");
+    for (std::size_t o = 0; o < scene_.observers.size(); ++o) r.observers.push_back(static_cast<int>(o));
+    for (std::size_t d = 0; d < scene_.detectors.size(); ++d) {
+      if (row(d).beam && !is_grid(d)) r.detectors.push_back(static_cast<int>(d));
+    }
+    if (!r.detectors.empty()) add(r, lanes_.size());
+  }
+
+  void grid(std::size_t d) {
+    const DetectorSpec& spec = scene_.detectors[d];
+    PassRequest r = request("sun directions");
+    r.detectors = {static_cast<int>(d)};
+    r.observers = {0};
+    r.grid = true;
+    r.orientations = sun_grid(scene_, static_cast<int>(detector_value(spec, "azimuth_steps")),
+                              static_cast<int>(detector_value(spec, "elevation_steps")));
+    r.first_orientation = next_orientation_;
+    next_orientation_ += r.orientations.size();
+    add(r, lanes_.size());
+  }
+
+  void picture(std::size_t d) {
+    const DetectorSpec& spec = scene_.detectors[d];
+    for (std::size_t o = 0; o < scene_.observers.size(); ++o) {
+      PassRequest r = request("pictures");
+      r.detectors = {static_cast<int>(d)};
+      r.observers = {static_cast<int>(o)};
+      r.pixels = true;
+      r.replicates = 2;
+      r.picture.width = static_cast<std::uint32_t>(detector_value(spec, "width"));
+      r.picture.height = static_cast<std::uint32_t>(detector_value(spec, "height"));
+      r.picture.samples = static_cast<std::uint32_t>(detector_value(spec, "samples"));
+      add(r, lanes_together(spec, r.orientations.size()));
+    }
+  }
+
+  // A request for each group of lanes that can go together.
+  void add(const PassRequest& all, std::size_t most_lanes) {
+    const bool scatter =
+        scene_.trace.max_bounces > 1 || std::any_of(all.detectors.begin(), all.detectors.end(),
+                                                    [&](int d) { return row(static_cast<std::size_t>(d)).scatters; });
+    for (std::vector<Lane>& lanes : lane_groups(scene_, lanes_, scatter, most_lanes)) {
+      requests_.push_back(all);
+      requests_.back().lanes = std::move(lanes);
+    }
+  }
+
+  const Scene& scene_;
+  const std::vector<Lane> lanes_;
+  const std::vector<Orientation> instants_;
+  std::size_t next_orientation_ = 0;
+  std::vector<PassRequest> requests_;
+};
+
+}  // namespace
+
+std::vector<PassRequest> pass_requests(const Scene& scene) {
+  return Requests(scene).all();
+}
+
+}  // namespace clray

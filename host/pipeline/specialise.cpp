@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the program of a pass contains, and the reasons: the rows of the tables that the scene uses, the kinds of rays
+// and sums that the pass needs, and its sizes. What a scene does not need is not compiled.
+#include <algorithm>
+
+#include "pipeline/plan.hpp"
+#include "scene/tables.hpp"
+
+namespace clray {
+namespace {
+
+constexpr std::uint64_t kFewKept = 24;  // numbers that a work-item keeps of a row where that is optional
+const char* const kHooks[] = {"hit", "connect", "scatter", "escape", "end", "flush"};
+
+class Specialiser {
+ public:
+  Specialiser(const Scene& scene, const Geometry& geometry, const PassPlan& plan)
+      : scene_(scene), geometry_(geometry), plan_(plan), all_(!scene.trace.specialise) {}
+
+  Specialised run() {
+    tables();
+    detectors();
+    rays();
+    sizes();
+    return std::move(out_);
+  }
+
+ private:
+  void define(const std::string& name, std::uint64_t value) { out_.options.defines[name] = std::to_string(value); }
+
+  void decide(const char* name, bool needed, const std::string& what, const std::string& why_kept,
+              const std::string& why_not) {
+    const bool on = needed || all_;
+    define(name, on ? 1 : 0);
+    if (on) {
+      out_.kept.push_back(what + ": " + (needed ? why_kept : "generic program (--no-specialise)"));
+    } else {
+      out_.left_out.push_back(what + ": " + why_not);
+    }
+  }
+
+  void choose(const char* kind, const std::vector<int>& used, std::vector<int>* rows_out, const char* what) {
+    std::string kept, left;
+    const std::vector<TableRow>& rows = table(kind);
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      const bool on = all_ || std::find(used.begin(), used.end(), static_cast<int>(r)) != used.end();
+      if (on) rows_out->push_back(static_cast<int>(r));
+      std::string& list = on ? kept : left;
+      list += (list.empty() ? "" : ", ") + rows[r].name;
+    }
+    if (!kept.empty()) out_.kept.push_back(std::string(what) + " " + kept + ": in the scene");
+    if (!left.empty()) out_.left_out.push_back(std::string(what) + " " + left + ": not in the scene");
+  }
+
+  void tables() {
+    choose("brdf", plan_.surfaces.models, &out_.options.brdfs, "surface models");
+    choose("shape", geometry_.shape_rows, &out_.options.shapes, "shapes");
+    std::string others;
+    for (const TableRow& row : table("detector")) {
+      const bool asked = std::any_of(scene_.detectors.begin(), scene_.detectors.end(),
+                                     [&](const DetectorSpec& d) { return d.kind == row.name; });
+      if (!asked && !row.inner) others += (others.empty() ? "" : ", ") + row.name;
+    }
+    if (!others.empty()) out_.left_out.push_back("detectors " + others + ": not asked for");
+  }
+
+  // Which detectors look at which moments, where each kind's detectors begin, and what work-items keep of their sums.
+  void detectors() {
+    std::map<std::string, std::string> hooks;
+    std::uint64_t kept = 0;
+    for (std::size_t r = 0; r < table("detector").size(); ++r) {
+      const TableRow& row = table("detector")[r];
+      std::uint64_t first = plan_.detectors.size(), count = 0;
+      for (std::size_t d = 0; d < plan_.detectors.size(); ++d) {
+        if (plan_.detectors[d].row != static_cast<int>(r)) continue;
+        first = std::min<std::uint64_t>(first, d);
+        ++count;
+      }
+      define("CLRAY_COUNT_" + row.id, count);
+      if (count == 0) continue;
+      define("CLRAY_FIRST_" + row.id, first);
+      if (!row.hooks.empty()) out_.options.detectors.push_back(static_cast<int>(r));
+      for (const std::string& hook : row.hooks) hooks[hook] += " X(" + row.id + ")";
+      for (std::size_t s = 0; s < row.sums.size(); ++s)
+        keep(row, row.sums[s], plan_.layout.blocks[plan_.detectors[first].first_block + s], count, &kept);
+    }
+    define("CLRAY_KEPT", std::max<std::uint64_t>(kept, 1));
+    for (const char* hook : kHooks) out_.options.defines[std::string("CLRAY_HOOK_") + hook + "(X)"] = hooks[hook];
+  }
+
+  void keep(const TableRow& row, const TableSum& sum, const SumBlock& block, std::uint64_t detectors,
+            std::uint64_t* kept) {
+    if (sum.keep == SumKeep::nothing) return;
+    std::uint64_t size = sum.keep == SumKeep::number ? 1 : block.width;
+    if (sum.rows != SumRows::view) size *= plan_.request.lanes.size();
+    if (sum.rows == SumRows::connection) size *= plan_.traits.connections;
+    if (sum.keep == SumKeep::small_row && size > kFewKept) return;
+    define("CLRAY_KEPT_" + row.id + "_" + sum.name, *kept);
+    *kept += size * detectors;
+  }
+
+  bool shadows() const {
+    return std::any_of(plan_.beams.connections.begin(), plan_.beams.connections.end(),
+                       [](const ClrayConnection& c) { return c.shadow != 0; });
+  }
+
+  void rays() {
+    const PathTraits& t = plan_.traits;
+    const bool bistatic = shadows(), again = t.connect && t.max_bounces > 1;
+    const bool moving_parts = std::any_of(geometry_.parts.begin(), geometry_.parts.end(),
+                                          [](const Part& part) { return part.hinged_component >= 0; });
+    const bool bounded = std::all_of(plan_.surfaces.models.begin(), plan_.surfaces.models.end(),
+                                     [](int row) { return table("brdf")[static_cast<std::size_t>(row)].bounded; });
+    decide("CLRAY_SHADOW", t.connect && !geometry_.convex && (bistatic || again), "shadow rays",
+           bistatic ? "an observer is not at the source" : "later bounces are connected",
+           !t.connect         ? "nothing is connected to an observer"
+           : geometry_.convex ? "the body is convex: what faces the observer is seen"
+                              : "the observer is at the source: what is lit is seen");
+    decide("CLRAY_SCATTER", t.scatter, "scattered directions",
+           t.max_bounces > 1      ? "several bounces"
+           : plan_.surfaces.delta ? "mirrors"
+                                  : "a detector follows the light on",
+           "one bounce, connected directly");
+    decide("CLRAY_DELTA", plan_.surfaces.delta, "ideal reflections", "a mirror is in the scene",
+           "no mirror in the scene");
+    decide("CLRAY_ONE_SIDED", plan_.surfaces.one_sided, "black backs", "a material is one-sided",
+           "every material reflects from both sides");
+    decide("CLRAY_PLANES", geometry_.shared_planes, "faces in one plane",
+           "some overlap: the one that faces the ray is hit", "no faces overlap in one plane");
+    decide("CLRAY_INSTANCED", moving_parts, "moving parts and their transforms", "a component is hinged",
+           "no component is hinged; fixed transforms are done once on the host");
+    decide("CLRAY_WIDE", t.scatter || bistatic || !bounded, "second accumulator",
+           "weights may exceed the bound of a first bounce", "weights of these surfaces are bounded");
+    define("CLRAY_STRATA", plan_.beams.strata.empty() ? 0 : 1);
+    if (!plan_.beams.strata.empty()) {
+      out_.kept.push_back("strata of the beam: the Sobol sampler, spread over the body's silhouette, delays and peaks");
+      out_.left_out.push_back("rays beside the body: cells of the beam's rectangle that nothing projects into");
+    }
+    const bool triangles =
+        std::count(geometry_.shape_rows.begin(), geometry_.shape_rows.end(), table_index("shape", "mesh")) > 0;
+    decide("CLRAY_TRIANGLES", triangles, "triangle test", "a mesh is in the scene", "no mesh in the scene");
+    decide("CLRAY_ANALYTIC", geometry_.shape_rows.size() > (triangles ? 1u : 0u), "analytic shapes", "in the scene",
+           "the scene is made of triangles");
+    if (plan_.request.lanes.size() == 1)
+      out_.left_out.push_back("wavelengths and variants: one lane, one number per material");
+  }
+
+  void sizes() {
+    define("CLRAY_PIXELS", plan_.request.pixels ? 1 : 0);
+    define("CLRAY_CONNECT", plan_.traits.connect ? 1 : 0);
+    define("CLRAY_SOBOL", scene_.trace.sobol ? 1 : 0);
+    define("CLRAY_LANES", plan_.request.lanes.size());
+    define("CLRAY_CONNECTIONS", plan_.traits.connections);
+    define("CLRAY_MATERIALS", plan_.surfaces.columns);
+    define("CLRAY_COMPONENTS", plan_.traits.components);
+    define("CLRAY_MAX_BOUNCES", static_cast<std::uint64_t>(plan_.traits.max_bounces));
+    // Few sizes, so that scenes share programs.
+    const std::uint32_t stack = geometry_.stack_needed + 1;
+    define("CLRAY_STACK", all_ || stack > 96 ? 192 : stack > 48 ? 96 : stack > 24 ? 48 : 24);
+  }
+
+  const Scene& scene_;
+  const Geometry& geometry_;
+  const PassPlan& plan_;
+  const bool all_;
+  Specialised out_;
+};
+
+}  // namespace
+
+Specialised specialise(const Scene& scene, const Geometry& geometry, const PassPlan& plan) {
+  return Specialiser(scene, geometry, plan).run();
+}
+
+}  // namespace clray

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// See sums.hpp.
+#include "pipeline/sums.hpp"
+
+#include <algorithm>
+
+#include "pipeline/estimate.hpp"
+
+namespace clray {
+
+std::uint64_t SumShape::rows(SumRows kind) const {
+  if (kind == SumRows::view) return views;
+  return views * lanes * (kind == SumRows::connection ? connections : 1) * replicates;
+}
+
+std::uint32_t SumLayout::add(const TableSum& sum, std::uint32_t width) {
+  SumBlock block;
+  block.name = sum.name;
+  block.rows = sum.rows;
+  block.scale = sum.scale;
+  block.row_count = shape.rows(sum.rows);
+  block.width = width;
+  block.unit = sum.unit;
+  std::uint64_t& end = block.counts() ? counts : values;
+  block.offset = end;
+  end += block.size();
+  blocks.push_back(block);
+  return static_cast<std::uint32_t>(blocks.size() - 1);
+}
+
+void merge_counts(const SumLayout& layout, const std::vector<std::uint32_t>& more, std::vector<std::uint64_t>* counts) {
+  for (const SumBlock& block : layout.blocks) {
+    if (!block.counts()) continue;
+    for (std::uint64_t k = block.offset; k < block.offset + block.size(); ++k) {
+      std::uint64_t& sum = (*counts)[k];
+      sum = block.scale == SumScale::greatest ? std::max<std::uint64_t>(sum, more[k]) : sum + more[k];
+    }
+  }
+}
+
+std::uint64_t digest_values(std::uint64_t state, const SumLayout& layout, const Sums& sums, std::uint32_t first,
+                            std::uint32_t last) {
+  for (std::uint32_t b = first; b < last; ++b) {
+    const SumBlock& block = layout.blocks[b];
+    if (!block.counts() && block.size() != 0)
+      state = fnv1a(state, sums.values.data() + block.offset, block.size() * sizeof(Sum));
+  }
+  return state;
+}
+
+std::uint64_t digest_counts(std::uint64_t state, const SumLayout& layout, const Sums& sums, std::uint32_t first,
+                            std::uint32_t last) {
+  std::uint64_t rows = 0;
+  for (std::uint32_t b = first; b < last; ++b) {
+    if (layout.blocks[b].counts()) rows = std::max(rows, layout.blocks[b].row_count);
+  }
+  for (std::uint64_t row = 0; row < rows; ++row) {
+    for (std::uint32_t b = first; b < last; ++b) {
+      const SumBlock& block = layout.blocks[b];
+      if (!block.counts() || row >= block.row_count) continue;
+      state = fnv1a(state, sums.counts.data() + block.offset + row * block.width, block.width * sizeof(std::uint64_t));
+    }
+  }
+  return state;
+}
+
+}  // namespace clray
