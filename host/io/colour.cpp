@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/spectrum.hpp"
+
 namespace clray::io {
 
 namespace {
@@ -14,29 +16,6 @@ constexpr double kPi = 3.14159265358979323846;
 double lobe(double x, double centre, double left, double right) {
   const double t = (x - centre) / (x < centre ? left : right);
   return std::exp(-0.5 * t * t);
-}
-
-double planck(double wavelength_nm, double temperature_K) {
-  constexpr double kSecondRadiation_nm_K = 1.438776877e7;  // h c / k, CODATA 2018
-  const double x = kSecondRadiation_nm_K / (wavelength_nm * temperature_K);
-  return 1.0 / (std::pow(wavelength_nm, 5) * std::expm1(x));
-}
-
-double spectrum_at(const Spectrum& spectrum, double wavelength_nm) {
-  const auto& x = spectrum.wavelength_nm;
-  const auto& y = spectrum.value;
-  if (x.empty()) return 1.0;
-  if (wavelength_nm <= x.front()) return y.front();
-  if (wavelength_nm >= x.back()) return y.back();
-  const std::size_t i = static_cast<std::size_t>(std::upper_bound(x.begin(), x.end(), wavelength_nm) - x.begin());
-  const double t = (wavelength_nm - x[i - 1]) / (x[i] - x[i - 1]);
-  return y[i - 1] + t * (y[i] - y[i - 1]);
-}
-
-double source_weight(const Source& source, double wavelength_nm) {
-  if (source.spectrum && source.blackbody_K <= 0.0) return spectrum_at(*source.spectrum, wavelength_nm);
-  if (source.blackbody_K > 0.0) return planck(wavelength_nm, source.blackbody_K);
-  return source.kind == Source::Kind::sun ? planck(wavelength_nm, 5772.0) : 1.0;
 }
 
 /// Columns of the RGB-to-XYZ matrix: each primary's xyz, scaled so that their sum is the white point.
@@ -59,18 +38,17 @@ Vec3 colour_matching(double w) {
 }
 
 Vec3 band_colour(const Band& band, const Source& source) {
-  if (!(band.high_nm > band.low_nm)) return colour_matching(band.low_nm);
-  // Midpoints of at most 1 nm: the fit's lobes are 12 nm and wider.
-  const int steps = static_cast<int>(std::min(20000.0, std::ceil(band.high_nm - band.low_nm))) + 16;
-  Vec3 sum{0.0};
-  double weight = 0.0;
-  for (int i = 0; i < steps; ++i) {
-    const double w = band.low_nm + (i + 0.5) * (band.high_nm - band.low_nm) / steps;
-    const double share = source_weight(source, w) * (band.response ? spectrum_at(*band.response, w) : 1.0);
-    sum += share * colour_matching(w);
-    weight += share;
-  }
-  return weight > 0.0 ? sum / weight : Vec3{0.0};
+  // Beyond these ends the fit's lobes are below 1e-9 of their peaks. They are 12 nm and wider.
+  constexpr double kLow_nm = 330.0, kHigh_nm = 880.0, kStep_nm = 5.0;
+  Band visible = band;
+  visible.low_nm = std::max(band.low_nm, kLow_nm);
+  visible.high_nm = std::min(band.high_nm, kHigh_nm);
+  const double light = source_band_W_m2(source, band);
+  if (!(visible.low_nm <= visible.high_nm) || !(light > 0.0)) return Vec3{0.0};
+  Vec3 mean;
+  for (int c = 0; c < 3; ++c)
+    mean[c] = band_mean([&](double w) { return colour_matching(w)[c]; }, kStep_nm, visible, source);
+  return source_band_W_m2(source, visible) / light * mean;
 }
 
 Vec3 xyz_to_linear_srgb(const Vec3& xyz) {

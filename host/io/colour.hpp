@@ -13,7 +13,8 @@ namespace clray::io {
 /// Colour-matching functions at a wavelength in nm.
 Vec3 colour_matching(double wavelength_nm);
 
-/// Mean of the colour-matching functions over a band, weighted by the source's spectrum (alike where it has none).
+/// Mean of the colour-matching functions over a band, weighted by the source's light and the band's response. Zero
+/// where the source has no light in it.
 Vec3 band_colour(const Band& band, const Source& source);
 
 /// XYZ to linear sRGB (white of D65 at Y = 1 becomes 1, 1, 1).

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "shared/elementary.h"
 
@@ -73,10 +74,12 @@ bool is_table(const Source& source) {
   return source.spectrum && source.blackbody_K <= 0.0;
 }
 
-/// Integral over a band of `spectrum` (or 1) × the source's light × the band's response.
-double band_integral(const Spectrum* spectrum, const Band& band, const Source& source) {
+/// Integral over a band of `weight` × the source's light × the band's response. `points`: of a table that `weight` is
+/// linear between, or null; `step_nm`: the widest panel on which it is smooth.
+template <class Weight>
+double band_integral(Weight weight, const Spectrum* points, double step_nm, const Band& band, const Source& source) {
   std::vector<double> ends{band.low_nm, band.high_nm};
-  const Spectrum* const tables[] = {spectrum, band.response.get(), is_table(source) ? &*source.spectrum : nullptr};
+  const Spectrum* const tables[] = {points, band.response.get(), is_table(source) ? &*source.spectrum : nullptr};
   for (const Spectrum* table : tables) {
     if (table == nullptr) continue;
     for (const double w : table->wavelength_nm) {
@@ -87,20 +90,24 @@ double band_integral(const Spectrum* spectrum, const Band& band, const Source& s
   double sum = 0.0;
   for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
     if (!(ends[i] < ends[i + 1])) continue;
-    const auto passed = [&](double w) {
-      return (spectrum != nullptr ? spectrum_at(*spectrum, w) : 1.0) * source_spectral_W_m2_nm(source, w) *
-             response_at(band, w);
-    };
+    const auto passed = [&](double w) { return weight(w) * source_spectral_W_m2_nm(source, w) * response_at(band, w); };
     // Products of three lines are exact in one panel; a black body wants steps that are small in x and in ln λ.
-    double panels = 1.0;
+    double panels = std::ceil((ends[i + 1] - ends[i]) / step_nm);
     if (!is_table(source)) {
       const double x = planck_x(ends[i], temperature_of(source)), relative = 1.0 - ends[i] / ends[i + 1];
-      panels = std::ceil(std::max(std::min(x, kLargest) * relative / 0.25, (ends[i + 1] / ends[i] - 1.0) / 0.05));
-      panels = std::min(std::max(panels, 1.0), 100000.0);
+      panels =
+          std::ceil(std::max({panels, std::min(x, kLargest) * relative / 0.25, (ends[i + 1] / ends[i] - 1.0) / 0.05}));
     }
-    sum += gauss(passed, ends[i], ends[i + 1], panels);
+    sum += gauss(passed, ends[i], ends[i + 1], std::min(std::max(panels, 1.0), 100000.0));
   }
   return sum;
+}
+
+constexpr double kAnyStep = std::numeric_limits<double>::infinity();
+
+/// The integral of light and response alone.
+double band_light(const Band& band, const Source& source) {
+  return band_integral([](double) { return 1.0; }, nullptr, kAnyStep, band, source);
 }
 
 double planck_share_per_unit() {
@@ -119,6 +126,18 @@ double spectrum_at(const Spectrum& spectrum, double wavelength_nm) {
   return (1.0 - t) * y[i - 1] + t * y[i];
 }
 
+double spectrum_inside(const Spectrum& spectrum, double wavelength_nm) {
+  const std::vector<double>& x = spectrum.wavelength_nm;
+  return wavelength_nm >= x.front() && wavelength_nm <= x.back() ? spectrum_at(spectrum, wavelength_nm) : 0.0;
+}
+
+double band_mean(const std::function<double(double)>& weight, double step_nm, const Band& band, const Source& source) {
+  if (source.kind == Source::Kind::laser)
+    return response_at(band, source.wavelength_nm) > 0.0 ? weight(source.wavelength_nm) : 0.0;
+  const double light = source_band_W_m2(source, band);
+  return light > 0.0 ? band_integral(weight, nullptr, step_nm, band, source) / light : 0.0;
+}
+
 double spectrum_mean(const Spectrum& spectrum, double low_nm, double high_nm) {
   if (!(low_nm < high_nm)) return spectrum_at(spectrum, low_nm);
   const double first = spectrum.wavelength_nm.front(), last = spectrum.wavelength_nm.back();
@@ -132,16 +151,17 @@ double spectrum_mean(const Spectrum& spectrum, const Band& band, const Source& s
   if (source.kind == Source::Kind::laser || !(band.low_nm < band.high_nm)) {
     return spectrum_mean(spectrum, band.low_nm, band.high_nm);
   }
-  const double light = band_integral(nullptr, band, source);
+  const double light = band_light(band, source);
   if (!(light > 0.0)) return spectrum_mean(spectrum, band.low_nm, band.high_nm);
   // Rounding must not carry a reflectance beyond its table's values.
   const auto [least, most] = std::minmax_element(spectrum.value.begin(), spectrum.value.end());
-  return std::min(std::max(band_integral(&spectrum, band, source) / light, *least), *most);
+  const auto value = [&](double w) { return spectrum_at(spectrum, w); };
+  return std::min(std::max(band_integral(value, &spectrum, kAnyStep, band, source) / light, *least), *most);
 }
 
 double response_at(const Band& band, double wavelength_nm) {
   if (wavelength_nm < band.low_nm || wavelength_nm > band.high_nm) return 0.0;
-  return band.response ? spectrum_at(*band.response, wavelength_nm) : 1.0;
+  return band.response ? spectrum_inside(*band.response, wavelength_nm) : 1.0;
 }
 
 double ab_zero_W_m2(const Band& band) {
@@ -164,7 +184,7 @@ double ab_zero_W_m2(const Band& band) {
 
 double source_band_W_m2(const Source& source, const Band& band) {
   if (source.kind == Source::Kind::laser) return response_at(band, source.wavelength_nm);
-  if (band.response) return band_integral(nullptr, band, source);
+  if (band.response) return band_light(band, source);
   if (is_table(source)) return integral_inside(*source.spectrum, band.low_nm, band.high_nm);
   const double temperature = temperature_of(source);
   const double low = planck_x(band.high_nm, temperature), high = planck_x(band.low_nm, temperature);
@@ -173,11 +193,7 @@ double source_band_W_m2(const Source& source, const Band& band) {
 
 double source_spectral_W_m2_nm(const Source& source, double wavelength_nm) {
   if (source.kind == Source::Kind::laser) return 0.0;
-  if (is_table(source)) {
-    const Spectrum& s = *source.spectrum;
-    const bool inside = wavelength_nm >= s.wavelength_nm.front() && wavelength_nm <= s.wavelength_nm.back();
-    return inside ? spectrum_at(s, wavelength_nm) : 0.0;
-  }
+  if (is_table(source)) return spectrum_inside(*source.spectrum, wavelength_nm);
   const double x = planck_x(wavelength_nm, temperature_of(source));
   if (x > kLargest) return 0.0;
   return source.irradiance_W_m2 * planck_share_per_unit() * planck(x) * x / wavelength_nm;

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Quantities against wavelength: values and means of tables, the light of a source within a band, the bands of a
 // scene, and the zero point of magnitudes. Wavelengths in nm, irradiance in W/m².
+// Beyond the ends of its table a surface's key is constant (spectrum_at); a source sends nothing and a filter passes
+// nothing (spectrum_inside). Whatever weighs by light goes through source_spectral_W_m2_nm() and response_at().
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -13,6 +16,9 @@ namespace clray {
 /// Value at a wavelength: linear between points, constant beyond them.
 double spectrum_at(const Spectrum& spectrum, double wavelength_nm);
 
+/// The same, but zero beyond them.
+double spectrum_inside(const Spectrum& spectrum, double wavelength_nm);
+
 /// Mean over [low, high], the exact integral of the piecewise linear function; the value where low == high.
 double spectrum_mean(const Spectrum& spectrum, double low_nm, double high_nm);
 
@@ -20,7 +26,11 @@ double spectrum_mean(const Spectrum& spectrum, double low_nm, double high_nm);
 /// source_band_W_m2() is what comes through. For a laser, or a band of no width or light, spectrum_mean().
 double spectrum_mean(const Spectrum& spectrum, const Band& band, const Source& source);
 
-/// Transmission of a band at a wavelength: its response (1 without one), 0 outside the band.
+/// Mean of `weight` (smooth over `step_nm`) over a band, weighted by the source's light and the band's response; for a
+/// laser its value at the line. 0 where there is no light.
+double band_mean(const std::function<double(double)>& weight, double step_nm, const Band& band, const Source& source);
+
+/// Transmission of a band at a wavelength: its response (1 without one), 0 outside the band and the response's table.
 double response_at(const Band& band, double wavelength_nm);
 
 /// Irradiance within a band of what has the AB magnitude 0: 3631 Jy at every frequency (Oke & Gunn 1983), weighted by

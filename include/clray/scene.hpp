@@ -23,7 +23,8 @@ namespace clray {
 using Vec3 = glm::dvec3;
 using Quaternion = glm::dquat;
 
-/// A quantity against wavelength, linear between its points and constant beyond them.
+/// A quantity against wavelength, linear between its points. Beyond them a surface's quantity is constant; a source
+/// sends nothing there, and a filter passes nothing.
 /// Wavelengths in nm, strictly increasing, at least one point.
 struct Spectrum {
   std::vector<double> wavelength_nm;
@@ -102,7 +103,8 @@ struct Band {
   std::string name;
   double low_nm = 0.0;
   double high_nm = 0.0;
-  /// Transmission of a filter against wavelength, any scale; null: a top hat. Nothing passes outside [low, high].
+  /// Transmission of a filter against wavelength, any scale; null: a top hat. Nothing passes outside [low, high]
+  /// nor beyond the table's ends.
   std::shared_ptr<const Spectrum> response = nullptr;
 };
 

@@ -90,7 +90,8 @@ TEST_CASE("a grey Lambert plate under white light has the computed sRGB value") 
   const double linear[3] = {3.2406 * x - 1.5372 * 0.5 - 0.4986 * z, -0.9689 * x + 1.8758 * 0.5 + 0.0415 * z,
                             0.0557 * x - 0.2040 * 0.5 + 1.0570 * z};
   Scene scene = io_test::scene("rgb");
-  scene.source.spectrum = Spectrum{{500}, {1}};
+  scene.source.kind = Source::Kind::sun;
+  scene.source.spectrum = Spectrum{{200, 900}, {1, 1}};
   Scratch scratch;
   Result result = io_test::result();
   result.image.push_back(plate(0.5, {{"all", 380, 780}}));
@@ -109,6 +110,43 @@ TEST_CASE("a grey Lambert plate under white light has the computed sRGB value") 
   CHECK(pixels[3] == 255);
   CHECK(pixels[4 * 2 + 3] == 0);
   CHECK(pixels[4 * 4 + 3] == 128);
+}
+
+TEST_CASE("colour is that of the light that there is: none is invented beyond a source's or a filter's table") {
+  // The mean of the fit over [low, high] in flat light, by the midpoint rule with steps of 0.01 nm: good to 1e-6.
+  const auto flat = [](double low, double high) {
+    Vec3 sum{0.0};
+    const int n = static_cast<int>(std::lround((high - low) / 0.01));
+    for (int i = 0; i < n; ++i) sum += io::colour_matching(low + (i + 0.5) * (high - low) / n);
+    return sum / static_cast<double>(n);
+  };
+  const auto near = [](const Vec3& found, const Vec3& expected) {
+    for (int c = 0; c < 3; ++c) CHECK(std::fabs(found[c] - expected[c]) <= 1e-5);
+  };
+  Source red;
+  red.kind = Source::Kind::sun;
+  red.spectrum = Spectrum{{610, 640}, {1, 1}};
+  near(io::band_colour({"all", 400, 700}, red), flat(610, 640));
+  near(io::band_colour({"all", 200, 10000}, red), flat(610, 640));
+  near(io::band_colour({"half", 400, 625}, red), flat(610, 625));
+  near(io::band_colour({"blue", 400, 500}, red), Vec3{0.0});
+  // A line far narrower than the band, which samples a nm apart would miss.
+  Source line = red;
+  line.spectrum = Spectrum{{588.99, 589.01}, {5, 5}};
+  near(io::band_colour({"all", 380, 780}, line), io::colour_matching(589.0));
+  // A filter that opens from 500 to 520 nm only, in a band that claims more.
+  Source white = red;
+  white.spectrum = Spectrum{{200, 1200}, {3, 3}};
+  const auto filter = std::make_shared<const Spectrum>(Spectrum{{500, 520}, {0.2, 0.2}});
+  near(io::band_colour({"filter", 400, 700, filter}, white), flat(500, 520));
+  // A band that reaches into the infrared keeps its visible share: 330-880 nm has all of the fit.
+  near(io::band_colour({"wide", 330, 1200}, white), flat(330, 880) * (550.0 / 870.0));
+  // 610-640 nm is red: sRGB is far beyond its green and blue there.
+  ImageResult image = plate(0.5, {{"all", 400, 700}});
+  const Vec3 rgb = io::rgb_weights(image, red).at(0);
+  CHECK(rgb.x > 1.0);
+  CHECK(rgb.y < 0.2 * rgb.x);
+  CHECK(rgb.z < 0.0);
 }
 
 TEST_CASE("white of D65 is white, and the transfer curve has its fixed points") {

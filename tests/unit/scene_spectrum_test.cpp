@@ -55,6 +55,36 @@ TEST_CASE("spectrum: linear inside, constant beyond") {
   CHECK(spectrum_mean(one, 100, 1000) == doctest::Approx(0.7).epsilon(1e-15));
 }
 
+TEST_CASE("spectrum: beyond its table a surface is constant, a source and a filter are zero") {
+  const Spectrum s{{400, 500}, {0.2, 0.4}};
+  CHECK(spectrum_inside(s, 399.9) == 0.0);
+  CHECK(spectrum_inside(s, 400) == 0.2);
+  CHECK(spectrum_inside(s, 500) == 0.4);
+  CHECK(spectrum_inside(s, 500.1) == 0.0);
+  Source light;
+  light.kind = Source::Kind::sun;
+  light.spectrum = Spectrum{{300, 900}, {1, 1}};
+  // A band that claims more than its curve has: a light meter behind it sees the curve alone, 30 over 400-500 nm.
+  const Band band{"b", 350, 800, std::make_shared<const Spectrum>(s)};
+  CHECK(response_at(band, 390) == 0.0);
+  CHECK(response_at(band, 510) == 0.0);
+  CHECK(source_band_W_m2(light, band) == doctest::Approx(30.0).epsilon(1e-14));
+  CHECK(ab_zero_W_m2(band) == doctest::Approx(ab_zero_W_m2(make_band("c", s))).epsilon(1e-14));
+  // Light over 450-550 nm only: the reflectance there is 0.3 to 0.4, then 0.4.
+  light.spectrum = Spectrum{{450, 550}, {1, 1}};
+  CHECK(spectrum_mean(s, {"wide", 300, 900}, light) == doctest::Approx((0.35 * 50 + 0.4 * 50) / 100).epsilon(1e-14));
+  // Of w over light and curve: 450-500 nm with weights 0.3 to 0.4, mean 475 + 50²/12·0.002/0.35 (moments of a line).
+  const auto wavelength = [](double w) { return w; };
+  const double mean = 475.0 + 2500.0 / 12.0 * 0.002 / 0.35;
+  CHECK(band_mean(wavelength, 7.0, band, light) == doctest::Approx(mean).epsilon(1e-14));
+  CHECK(band_mean(wavelength, 7.0, make_band(600, 700), light) == 0.0);
+  Source laser;
+  laser.wavelength_nm = 450;
+  CHECK(band_mean(wavelength, 7.0, band, laser) == 450.0);
+  laser.wavelength_nm = 600;
+  CHECK(band_mean(wavelength, 7.0, band, laser) == 0.0);
+}
+
 TEST_CASE("spectrum: means are exact integrals") {
   const Spectrum s{{400, 500, 700}, {0.2, 0.4, 0.1}};
   CHECK(spectrum_mean(s, 400, 700) == doctest::Approx((0.3 * 100 + 0.25 * 200) / 300).epsilon(1e-15));
