@@ -8,9 +8,9 @@
 #include <tuple>
 
 #include "clray/error.hpp"
-#include "pipeline/convexity.hpp"
 #include "pipeline/portable_tables.hpp"
 #include "pipeline/raw_primitives.hpp"
+#include "scene/mesh_convexity.hpp"
 #include "scene/motion.hpp"
 #include "scene/tables.hpp"
 #include "shape/shape.h"
@@ -71,7 +71,7 @@ class Packer {
     share_planes();
     build_trees();
     bound();
-    g_.convex = g_.parts.size() == 1 && scene_.components.size() == 1 && !g_.shared_planes && is_convex();
+    g_.single = g_.parts.size() == 1 && scene_.components.size() == 1 && !g_.shared_planes;
     return std::move(g_);
   }
 
@@ -334,12 +334,6 @@ class Packer {
     return std::sqrt(sum);
   }
 
-  bool is_convex() const {
-    if (scene_.components[0].mesh) return convex_triangles(g_.shapes);
-    return (shape_traits_of(static_cast<int>(g_.primitives[0].shape), g_.shapes.data() + CLRAY_SHAPE_KEYS) &
-            CLRAY_SHAPE_CONVEX) != 0;
-  }
-
   const Scene& scene_;
   Geometry g_;
   std::vector<RawPrimitive> raw_;
@@ -348,6 +342,13 @@ class Packer {
 };
 
 }  // namespace
+
+bool Geometry::convex() const {
+  if (!single) return false;
+  if (parts[0].shapes.empty()) return convex_triangles(shapes);
+  return (shape_traits_of(parts[0].shape_rows[0], shapes.data() + parts[0].shapes[0] + CLRAY_SHAPE_KEYS) &
+          CLRAY_SHAPE_CONVEX) != 0;
+}
 
 Geometry build_geometry(const Scene& scene) {
   return Packer(scene).pack();

@@ -42,13 +42,16 @@ struct Geometry {
   int mesh_row = 0;             ///< of triangles
   std::vector<std::uint32_t> part_of_component;
   std::uint32_t stack_needed = 1;  ///< of the deepest tree
-  bool convex = false;             ///< nothing outside can be hidden by the body itself
+  bool single = false;             ///< one component, and no faces in one place
   bool shared_planes = false;      ///< faces overlap in one plane
   std::uint64_t conflicts = 0;     ///< pairs of them that look the same way with different materials
   MeshReport report;
   Point centre{{0, 0, 0}};  ///< of the bounding sphere over all hinge angles
   double radius = 0.0;
   double extent = 0.0;  ///< longest side of the box around it, over all hinge angles
+
+  /// Whether nothing outside can be hidden by the body itself. Asked where it matters only: for a mesh this takes time.
+  bool convex() const;
 };
 
 /// Builds everything that does not depend on the view. Throws Error(input) if nothing can be hit.

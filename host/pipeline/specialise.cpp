@@ -106,16 +106,16 @@ class Specialiser {
 
   void rays() {
     const PathTraits& t = plan_.traits;
-    const bool bistatic = shadows(), again = t.connect && t.max_bounces > 1;
+    const bool bistatic = shadows(), may_hide = t.connect && (bistatic || t.max_bounces > 1);
     const bool moving_parts = std::any_of(geometry_.parts.begin(), geometry_.parts.end(),
                                           [](const Part& part) { return part.hinged_component >= 0; });
     const bool bounded = std::all_of(plan_.surfaces.models.begin(), plan_.surfaces.models.end(),
                                      [](int row) { return table("brdf")[static_cast<std::size_t>(row)].bounded; });
-    decide("CLRAY_SHADOW", t.connect && !geometry_.convex && (bistatic || again), "shadow rays",
+    decide("CLRAY_SHADOW", may_hide && !geometry_.convex(), "shadow rays",
            bistatic ? "an observer is not at the source" : "later bounces are connected",
-           !t.connect         ? "nothing is connected to an observer"
-           : geometry_.convex ? "the body is convex: what faces the observer is seen"
-                              : "the observer is at the source: what is lit is seen");
+           !t.connect ? "nothing is connected to an observer"
+           : may_hide ? "the body is convex: what faces the observer is seen"
+                      : "the observer is at the source: what is lit is seen");
     decide("CLRAY_SCATTER", t.scatter, "scattered directions",
            t.max_bounces > 1      ? "several bounces"
            : plan_.surfaces.delta ? "mirrors"

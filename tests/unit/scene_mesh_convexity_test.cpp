@@ -7,7 +7,7 @@
 #include <random>
 
 #include "clray/scene.hpp"
-#include "pipeline/convexity.hpp"
+#include "scene/mesh_convexity.hpp"
 
 using namespace clray;
 
