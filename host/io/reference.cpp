@@ -151,6 +151,9 @@ std::vector<Total> totals(const Result& result) {
         length > 0.0 ? (std::fabs(c.x) * e.x + std::fabs(c.y) * e.y + std::fabs(c.z) * e.z) / length : 0.0;
     all.push_back({pressure.key, length, error, "m2"});
   }
+  for (const auto& sum : result.table) {
+    for (const Estimate& e : sum.values) all.push_back({sum.key, e.value, e.standard_error, sum.unit.c_str()});
+  }
   return all;
 }
 

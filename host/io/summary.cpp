@@ -152,12 +152,20 @@ void add_entries(Json& detectors, const Writer& writer, const Records& records, 
   }
 }
 
+/// {sum: {unit, values}} of a sum that is a result by itself.
+Json sum_entry(const TableResult& sum) {
+  Json values = Json::array();
+  for (const Estimate& e : sum.values) values.push_back(value_and_error(e));
+  return {{sum.name, {{"unit", sum.unit}, {"values", values}}}};
+}
+
 Json detectors_of(const Writer& writer) {
   Json detectors = Json::object();
   add_entries(detectors, writer, writer.result.delay, delay_entry);
   add_entries(detectors, writer, writer.result.spectrometer, spectrometer_entry);
   add_entries(detectors, writer, writer.result.pressure,
               [&](const PressureResult& record) { return pressure_entry(record, writer.scene); });
+  add_entries(detectors, writer, writer.result.table, sum_entry);
   add_entries(detectors, writer, writer.result.image, [&](const ImageResult& image) {
     Json entry = image_entry(image);
     if (writer.kind_of(image.key) == "rgb") {

@@ -93,6 +93,7 @@ std::vector<std::string> write_result(const Result& result, const Scene& scene, 
     io::write_spectrometer(writer);
     io::write_pressure(writer);
     io::write_images(writer);
+    io::write_sums(writer);
     io::write_error(writer);
     std::vector<MoreFiles> more;
     for (const auto& write_more : options.more) {

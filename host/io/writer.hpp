@@ -100,7 +100,8 @@ struct Total {
   double value = 0.0, standard_error = 0.0;
   const char* unit = "";
 };
-/// All totals: of delay, then spectrometer, then |C| of pressure.
+/// All totals: of delay, then spectrometer, then |C| of pressure, then every number of sums that are results by
+/// themselves.
 std::vector<Total> totals(const Result& result);
 /// What `reference` says of the result's first total; NaN if nothing.
 double first_reference_total(const Result& result, const Reference& reference);
@@ -110,6 +111,7 @@ void write_error(Writer& writer);
 void write_spectrometer(Writer& writer);
 void write_pressure(Writer& writer);
 void write_images(Writer& writer);
+void write_sums(Writer& writer);
 void write_summary(Writer& writer, const std::vector<MoreFiles>& more);
 
 }  // namespace clray::io

@@ -185,6 +185,13 @@ void warn_dark(Result* result) {
   painted.warn("black pictures: nothing that is seen was lit", &result->warnings);
 }
 
+bool has_mirrors(const Scene& scene) {
+  const auto mirror = [](const Material& m) { return table_row("brdf", m.model).delta; };
+  if (std::any_of(scene.materials.begin(), scene.materials.end(), mirror)) return true;
+  return std::any_of(scene.variants.begin(), scene.variants.end(),
+                     [&](const Variant& v) { return std::any_of(v.materials.begin(), v.materials.end(), mirror); });
+}
+
 }  // namespace
 
 void add_warnings(const Scene& scene, const Ending& ending, Result* result) {
@@ -202,6 +209,11 @@ void add_warnings(const Scene& scene, const Ending& ending, Result* result) {
   }
   if (result->diagnostics.above_window_fraction > 0.01 || result->diagnostics.below_window_fraction > 0.01)
     result->warnings.push_back("more than 1 % of a pulse lies outside the delay window");
+  if (!result->image.empty() && scene.trace.max_bounces > 1 && has_mirrors(scene))
+    result->warnings.push_back(
+        "pictures leave out the light that reaches a surface by way of mirrors, and do not know its share: compare "
+        "with "
+        "a spectrometer, which has it");
   if (result->target_asked && !result->target_reached) result->warnings.push_back(missed_target(scene, ending));
 }
 
