@@ -18,7 +18,7 @@ struct Outcome {
 };
 
 struct Case {
-  std::string area;  ///< "bitwise", "geometry", "surfaces", "bins", "statistics", "coverage"
+  std::string area;  ///< "bitwise", "geometry", "surfaces", "bins", "statistics", "coverage", "laws"
   std::string name;
   std::string must_hold;
   std::string tolerance;  ///< and where it comes from
@@ -42,6 +42,7 @@ std::vector<Case> bin_cases();
 std::vector<Case> photon_cases();
 std::vector<Case> statistics_cases();
 std::vector<Case> coverage_cases();
+std::vector<Case> law_cases();
 
 /// A sum of equal weights: each is rounded alike, by up to half of 2^-37 of the largest weight (DESIGN, Kernels).
 constexpr double kQuantumOfTotal = 1e-11;

@@ -187,5 +187,5 @@ TEST_CASE("the embedded files are the files of kernels/, the tables can be read"
   const auto ids = table_row_ids("brdf", files);
   CHECK(std::find(ids.begin(), ids.end(), "lambert") == ids.begin());
   CHECK(table_row_ids("shape", files).front() == "triangle");
-  CHECK(table_row_ids("detector", files).front() == "delay");
+  CHECK(table_row_ids("detector", files).front() == "intensity");
 }

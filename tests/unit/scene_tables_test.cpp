@@ -116,6 +116,7 @@ TEST_CASE("tables: the listing names every row and key") {
   for (const std::string kind : {"brdf", "shape", "detector"}) {
     const std::string text = list_table(kind);
     for (const TableRow& row : table(kind)) {
+      if (row.inner) continue;  // no scene names it
       CHECK(text.find(row.name + ": " + row.meaning + "\n") != std::string::npos);
       for (const TableKey& key : row.keys) CHECK(text.find("    " + key.name) != std::string::npos);
     }

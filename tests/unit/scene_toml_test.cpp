@@ -70,7 +70,7 @@ TEST_CASE("toml: words out of a list") {
   CHECK(f.complaint(kBall + "[source]\nkind = \"lamp\"\n") ==
         "s.toml:3:8: source.kind: expected one of laser, sun, found \"lamp\"");
   CHECK(f.complaint(kBall + "[[detector]]\nkind = \"dealy\"\n")
-            .find("s.toml:3:8: detector.kind: expected one of delay, ") == 0);
+            .find("s.toml:3:8: detector.kind: expected one of pressure, delay, ") == 0);
   CHECK(f.complaint("[[material]]\nname = \"a\"\nmodel = \"lambrt\"\n" + kBall).find("; did you mean 'lambert'?") !=
         std::string::npos);
   CHECK(f.complaint(kBall + "[trace]\nsampler = \"halton\"\n") ==

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// Runs the laws on random scenes and says what they found. A trial whose worst record would be met by chance in one of
+// 20 trials is run again with 16 times the rays and other seeds, and fails if it deviates again beyond what a whole run
+// of the harness would show by chance once in a hundred times. CLRAY_LAWS_SEED=n runs the scene n alone.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "laws/compare.hpp"
+#include "laws/laws.hpp"
+
+namespace clray_test {
+
+enum class LawGroup { alone, order, symmetry };
+
+class LawHarness {
+ public:
+  LawHarness(LawGroup group, int scenes, int frames) : group_(group), scenes_(scenes), frames_(frames) {}
+
+  /// Runs the scenes of seeds 1 … scenes (or CLRAY_LAWS_SEED). Returns what fails, a text each: the law, the records,
+  /// the seed, and the scene as TOML.
+  std::vector<std::string> run();
+
+  /// How many trials and records there were.
+  std::string counts() const;
+  /// counts(), and a line a kind of record: mean of t² and its error.
+  std::string summary() const;
+  /// Kinds of record whose claimed errors are too small: mean t² above what t of 15 degrees of freedom gives.
+  std::vector<std::string> small_claims() const;
+
+ private:
+  void run_scene(std::uint64_t seed);
+  void run_trial(const RandomScene& random, const Trial& trial, const clray::Result& combined);
+  void judge_again(const RandomScene& random, const Trial& trial, const std::vector<std::string>& names);
+  void fail(const RandomScene& random, const Trial* trial, const std::string& what);
+  double trials() const;
+
+  LawGroup group_;
+  int scenes_, frames_;
+  ChiSquare chi_;
+  std::vector<Comparison> of_scene_;
+  std::vector<std::string> failures_;
+  int compared_ = 0, tried_ = 0, again_ = 0, refused_ = 0, doubtful_ = 0;
+  std::vector<std::string> refusals_;
+};
+
+/// Scenes to run: 60, or 1000 with CLRAY_LONG_TESTS=1; frames: fewer for fewer, since each costs some programs.
+int law_scenes();
+int law_frames();
+
+}  // namespace clray_test
