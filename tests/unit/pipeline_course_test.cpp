@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+// The course of a pass: what it asks for, step by step, under errors that are made up; and that a course taken from the
+// state of another goes on alike. Expected steps follow from the rule (PHYSICS section 6) by hand.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <string>
+
+#include "pipeline/course.hpp"
+#include "pipeline/reflectance.hpp"
+#include "pipeline/sums.hpp"
+
+using namespace clray;
+
+namespace {
+
+CourseRules search_rules() {
+  CourseRules rules;
+  rules.first_points = 4;
+  rules.most_points = 64;
+  rules.enough_points = 32;
+  rules.target = 0.1;
+  rules.target_asked = true;
+  rules.t95 = 2.0;
+  return rules;
+}
+
+/// Takes a step whose error is `error` and checks which it was.
+void step(Course& course, const char* phase, std::uint64_t points, std::uint32_t epoch, double error) {
+  const auto next = course.next();
+  REQUIRE(next.has_value());
+  CHECK(std::string(next->phase) == phase);
+  CHECK(next->points == points);
+  CHECK(next->epoch == epoch);
+  course.took(error);
+}
+
+}  // namespace
+
+TEST_CASE("a search doubles to the target, confirms on fresh scrambles, and goes on where that misses") {
+  Course course(search_rules());
+  step(course, "search", 4, 0, 0.2);
+  step(course, "search", 8, 0, 0.05);  // 2 · 0.05 meets 0.1
+  step(course, "confirm", 4, 1, 0.04);
+  step(course, "confirm", 8, 1, 0.06);  // misses
+  Course resumed(course.rules(), course.state());
+  for (Course* c : {&course, &resumed}) {
+    step(*c, "search", 16, 0, 0.03);
+    step(*c, "confirm", 4, 2, 0.09);
+    step(*c, "confirm", 8, 2, 0.09);
+    step(*c, "confirm", 16, 2, 0.02);
+    CHECK(!c->next());
+    CHECK(c->state().answer_confirmed);
+    CHECK(c->state().reached);
+    CHECK(std::string(c->state().ended_by) == "target");
+    CHECK(c->state().confirmed == 8 + 16);
+  }
+}
+
+TEST_CASE("the cap ends a search, zero totals end it as n/a, and an interrupt leaves the search's answer") {
+  Course capped(search_rules());
+  for (std::uint64_t n = 4; n <= 64; n *= 2) step(capped, "search", n, 0, 1.0);
+  CHECK(!capped.next());
+  CHECK(std::string(capped.state().ended_by) == "max_rays");
+  CHECK(!capped.state().partial);
+
+  Course zero(search_rules());
+  for (std::uint64_t n = 4; n <= 32; n *= 2) step(zero, "search", n, 0, std::nan(""));
+  for (std::uint64_t n = 4; n <= 32; n *= 2) step(zero, "confirm", n, 1, std::nan(""));
+  CHECK(!zero.next());
+  CHECK(std::string(zero.state().ended_by) == "zero");
+  CHECK(!zero.state().reached);
+
+  Course cut(search_rules());
+  step(cut, "search", 4, 0, 0.01);
+  step(cut, "confirm", 4, 1, 0.2);
+  step(cut, "search", 8, 0, 0.04);
+  cut.cut("interrupt");
+  CHECK(!cut.next());
+  CHECK(cut.state().partial);
+  CHECK(!cut.state().answer_confirmed);
+  CHECK(cut.state().error == 0.04);
+}
+
+TEST_CASE("blocks of sums: rows, offsets, and maxima beside counts") {
+  SumLayout layout;
+  layout.shape = {2, 3, 4, 5};
+  const TableSum values{"a", SumRows::connection, "3", SumScale::weight, SumKeep::nothing, ""};
+  const TableSum most{"b", SumRows::lane, "1", SumScale::greatest, SumKeep::nothing, ""};
+  const TableSum hits{"c", SumRows::view, "7", SumScale::count, SumKeep::nothing, ""};
+  for (const TableSum* sum : {&values, &most, &hits})
+    layout.add(*sum, static_cast<std::uint32_t>(std::stoi(sum->width)));
+  CHECK(layout.values == 2 * 3 * 4 * 5 * 3);
+  CHECK(layout.counts == 2 * 3 * 5 + 2 * 7);
+  CHECK(layout.blocks[2].offset == 2 * 3 * 5);
+  std::vector<std::uint64_t> counts(layout.counts, 4);
+  merge_counts(layout, std::vector<std::uint32_t>(layout.counts, 3), &counts);
+  CHECK(counts.front() == 4);  // the greater
+  CHECK(counts.back() == 7);   // the sum
+}
+
+TEST_CASE("a table of reflectance follows a step, a root at grazing incidence and a kink between its nodes") {
+  const std::function<double(double)> functions[] = {
+      [](double mu) { return mu < 0.7071 ? 0.9 : 0.1; },
+      [](double mu) { return std::sqrt(mu); },
+      [](double mu) { return std::fabs(mu - 0.123); },
+      [](double mu) { return std::exp(-mu / 1e-4); },
+  };
+  for (const auto& f : functions) {
+    const std::vector<double> table = reflectance_table(f, {});
+    const auto count = static_cast<std::size_t>(table[0]);
+    REQUIRE(table.size() == 1 + 2 * count);
+    double worst = 0.0;
+    for (int k = 1; k <= 20000; ++k) {
+      const double mu = std::pow(k / 20000.0, 4.0);  // most of them at grazing incidence
+      if (std::fabs(mu - 0.7071) < 1e-9) continue;   // within the step itself there is no line to follow
+      std::size_t low = 0;
+      while (low + 2 < count && table[1 + low + 1] <= mu) ++low;
+      const double share = (mu - table[1 + low]) / (table[2 + low] - table[1 + low]);
+      const double found = table[1 + count + low] + share * (table[2 + count + low] - table[1 + count + low]);
+      worst = std::max(worst, std::fabs(found - f(mu)));
+    }
+    CHECK(worst <= kReflectanceError);
+  }
+}
