@@ -172,7 +172,7 @@ int law_scenes() {
   const char* asked = std::getenv("CLRAY_LAWS_SCENES");
   if (asked != nullptr) return std::atoi(asked);
   const char* all = std::getenv("CLRAY_LONG_TESTS");
-  return all != nullptr && std::string(all) == "1" ? 1000 : 60;
+  return all != nullptr && std::string(all) == "1" ? 1000 : 6;
 }
 
 int law_frames() {

@@ -46,7 +46,7 @@ class LawHarness {
   std::vector<std::string> refusals_;
 };
 
-/// Scenes to run: 60, or 1000 with CLRAY_LONG_TESTS=1; frames: fewer for fewer, since each costs some programs.
+/// Scenes to run: 6, or 1000 with CLRAY_LONG_TESTS=1; frames: fewer for fewer, since each costs some programs.
 int law_scenes();
 int law_frames();
 
