@@ -27,7 +27,7 @@ def signed(percent):
 
 
 def diffuse_photons(body, name, area_m2, cosine):
-    """Photons of the diffuse term alone from a plate in full view: (R_d of PHYSICS 2) * area * cosine^2."""
+    """Photons of the diffuse term alone, plate in full view: (R_d of docs/physics.md, section 2) * area * cosine^2."""
     level, lobe, _ = name.split("-")
     rho, d = RHO[level], SHARE[lobe]
     g = 1.0 - (1.0 - cosine / 2.0) ** 5

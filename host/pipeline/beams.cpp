@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // See beams.hpp. The beam is a rectangle across the direction to the source: the fp64 bound of the
-// body; for a source at +z or -z its axes are x and y (PHYSICS section 1).
+// body; for a source at +z or -z its axes are x and y (docs/physics.md, section 1).
 #include "pipeline/beams.hpp"
 
 #include <algorithm>

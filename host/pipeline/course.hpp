@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The course of a pass as data: which points come next, and when it is over (PHYSICS section 6, "Stopping"). A course
-// is stepped: next() names points to trace, took() tells what their error is, cut() that they were not finished. Its
-// state is a plain value, so that a run can be saved between two steps and go on from there.
+// The course of a pass as data: which points come next, and when it is over (docs/physics.md, section 6, "Stopping"). A
+// course is stepped: next() names points to trace, took() tells what their error is, cut() that they were not finished.
+// Its state is a plain value, so that a run can be saved between two steps and go on from there.
 #pragma once
 
 #include <cstdint>

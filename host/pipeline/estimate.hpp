@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the values of independent replicates to estimates with errors (PHYSICS section 6).
+// From the values of independent replicates to estimates with errors (docs/physics.md, section 6).
 #pragma once
 
 #include <cstdint>

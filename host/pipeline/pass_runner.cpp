@@ -22,7 +22,7 @@
 namespace clray {
 namespace {
 
-constexpr double kSliceSeconds = 0.15;                  // of a launch; DESIGN asks for at most 0.3
+constexpr double kSliceSeconds = 0.15;                  // of a launch: an interrupt waits no longer
 constexpr std::uint64_t kMostContributions = 1u << 24;  // per accumulator between drains (scales())
 constexpr std::uint32_t kChunk = 16;                    // points of a work-item
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What decides when a pass stops (see outcome.hpp; PHYSICS section 6).
+// What decides when a pass stops (see outcome.hpp; docs/physics.md, section 6).
 #include <cmath>
 #include <limits>
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The call that traces a scene: geometry, passes, when each stops, and the result (PHYSICS section 6, "Stopping").
+// The call that traces a scene: geometry, passes, when each stops, and the result (docs/physics.md, section 6,
+// "Stopping").
 #include "clray/trace.hpp"
 
 #include <fmt/format.h>

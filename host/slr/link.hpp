@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The link budget of a laser-ranging station: from optical cross-section to expected photoelectrons per pulse, at the
 // station or at another observer with the station's receiver. SI.
-// Source: Degnan (1993), "Millimeter accuracy satellite laser ranging: a review", eq. for N; PHYSICS section 5.
+// Source: Degnan (1993), "Millimeter accuracy satellite laser ranging: a review", eq. for N;
+// docs/physics.md, section 5.
 #pragma once
 
 #include <string>

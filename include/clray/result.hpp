@@ -51,7 +51,7 @@ struct Orientation {
   std::vector<Vec3> observers;  ///< body frame, one per Scene::observers
 };
 
-/// The delay camera: A(t), see PHYSICS section 1.
+/// The delay camera: A(t), see docs/physics.md, section 1.
 struct DelayResult {
   ResultKey key;
   Estimate intensity_m2_per_sr;  ///< A, everything including below and above the window
@@ -110,8 +110,8 @@ struct TableResult {
 };
 
 /// Energy books of one variant and band where paths scatter, as power over irradiance, the mean over the orientations
-/// (PHYSICS section 4). Of a grid of Sun directions, the mean over the grid; `key.detector` then names its detector,
-/// else it is empty.
+/// (docs/physics.md, section 4). Of a grid of Sun directions, the mean over the grid; `key.detector` then names its
+/// detector, else it is empty.
 struct EnergyBooks {
   ResultKey key;
   Estimate incident_m2, reflected_m2, absorbed_m2, roulette_m2, truncated_m2, unconnected_specular_m2;
@@ -223,7 +223,7 @@ double relative_true_error(const Result& result, const Reference& reference);
 /// "1.2345 ± 0.0012": a number rounded to two digits of its error, in powers of ten where that reads better.
 std::string format_with_error(double value, double error);
 
-/// Shots of a laser-ranging session over the motion of `scene`, from its delay results (PHYSICS section 5);
+/// Shots of a laser-ranging session over the motion of `scene`, from its delay results (docs/physics.md, section 5);
 /// written by write_result() where the scene has a station and a motion.
 struct SessionSummary {
   std::uint64_t shots = 0, signal = 0, noise = 0, none = 0;

@@ -152,7 +152,7 @@ struct Motion {
   std::vector<Attitude> attitudes;
 };
 
-/// A laser-ranging station and its link (PHYSICS section 5); defaults are those printed by a run.
+/// A laser-ranging station and its link (docs/physics.md, section 5); defaults are those printed by a run.
 struct Station {
   std::string name = "clray";
   double range_m = 1.0e6;                         ///< fixed range, when neither table nor prediction is given

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Laser ranging: from the delay camera's A(t) to what a station records (PHYSICS section 5): expected photon rates,
-// the link budget, and sessions of single-photon shots as tables, a picture and ILRS CRD v2 full-rate data.
+// Laser ranging: from the delay camera's A(t) to what a station records (docs/physics.md, section 5): expected photon
+// rates, the link budget, and sessions of single-photon shots as tables, a picture and ILRS CRD v2 full-rate data.
 #pragma once
 
 #include <cstdint>

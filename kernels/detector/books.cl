@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Energy books, there wherever paths scatter: what arrives, is absorbed, leaves, is won or lost at roulette, is cut off,
-// and leaves mirrors toward nobody. Each is added up apart, so that their balance is a test (PHYSICS section 4).
+// Energy books, there wherever paths scatter: what arrives, is absorbed, leaves, is won or lost at roulette, is cut
+// off, and leaves mirrors toward nobody. Each is added up apart, so that their balance is a test (docs/physics.md,
+// section 4).
 #ifndef CLRAY_DETECTOR_BOOKS_CL
 #define CLRAY_DETECTOR_BOOKS_CL
 

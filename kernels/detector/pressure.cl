@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // pressure: momentum and angular momentum that light leaves on the body, per component, in units of the share of the
 // beam (times the lever scale). Light of share phi hands over phi·d on arrival and takes phi'·d' along when it leaves
-// (PHYSICS section 4); absorbed light that is re-radiated thermally pushes with 2/3 of its share against the normal.
-// Settings: the keys of its row.
+// (docs/physics.md, section 4); absorbed light that is re-radiated thermally pushes with 2/3 of its share against the
+// normal. Settings: the keys of its row.
 #ifndef CLRAY_DETECTOR_PRESSURE_CL
 #define CLRAY_DETECTOR_PRESSURE_CL
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Stage 3, shade and connect: what a lit surface, or a mirror that the path left, sends toward each connection. Weights
 // are f·mu_o per unit of light arriving along the path: the light of a beam element dA·mu_i is already in the share of
-// the beam that the ray stands for (PHYSICS section 1).
+// the beam that the ray stands for (docs/physics.md, section 1).
 #ifndef CLRAY_SHADE_CL
 #define CLRAY_SHADE_CL
 

@@ -158,8 +158,8 @@ class Flattener {
     add(at + "roulette", "book", e.roulette_m2, area_);
     add(at + "truncated", "book", e.truncated_m2, area_);
     add(at + "unconnected", "book", e.unconnected_specular_m2, area_);
-    // What came in, and what roulette made, must be somewhere (PHYSICS section 4). The books of a run are correlated:
-    // the sum of their errors bounds that of the balance.
+    // What came in, and what roulette made, must be somewhere (docs/physics.md, section 4). The books of a run are
+    // correlated: the sum of their errors bounds that of the balance.
     const double balance =
         e.incident_m2.value + e.roulette_m2.value - e.reflected_m2.value - e.absorbed_m2.value - e.truncated_m2.value;
     double error = 0.0, doubt = 0.0;

@@ -76,8 +76,8 @@ TEST_CASE("reference: polyhedra, monostatic and bistatic, against their facet su
       const Pulse exact = convex_lambert(*mesh, 0.7, s, o);
       const ref::Window window{-3e-8L, 6e-8L / 50, 50};
       const auto h = reference_of(scene, ref::vector_of(s), ref::vector_of(o), window, 15);
-      // Owen-Sobol totals of silhouettes: about 5·N^(-3/4) of the total (PHYSICS section 6) is 0.2 %; 1 % is 5 of
-      // these.
+      // Owen-Sobol totals of silhouettes: about 5·N^(-3/4) of the total (docs/physics.md, section 6) is 0.2 %; 1 % is 5
+      // of these.
       CHECK(total(h) == relative(exact.total_m2_per_sr).epsilon(0.01));
       for (std::size_t i = 0; i < 50; ++i) {
         const double t = static_cast<double>(window.first_s + static_cast<ref::Real>(i) * window.bin_s);

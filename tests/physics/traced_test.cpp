@@ -20,7 +20,7 @@ struct Tally {
   std::uint64_t samples = 0, excluded = 0;
 };
 
-/// Upper bound of f·mu_o for this source and observer (DESIGN, Kernels: W).
+/// Upper bound of f·mu_o for this source and observer (docs/physics.md, section 7: W).
 double weight_bound(const clray::Scene& scene, clray::Vec3 s, clray::Vec3 o) {
   double bound = 0.0;
   const double u = 0.5 * std::sqrt(2.0 + 2.0 * (s.x * o.x + s.y * o.y + s.z * o.z));

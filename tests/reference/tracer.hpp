@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The judge of the tracer: a serial, brute-force delay tracer over plain triangles, in long double, with no
 // acceleration structure and no code or formula file in common with kernels/ or host/. Single scattering,
-// monostatic or bistatic. Body frame, m, s; A in m²/sr (PHYSICS section 1).
+// monostatic or bistatic. Body frame, m, s; A in m²/sr (docs/physics.md, section 1).
 // A sample that lies within 1e-12 of the body's extent of a triangle's edge or of a bin's edge may be decided
 // either way in fp64: it is excluded from the bins, counted, and what it could bring is bounded bin by bin.
 #pragma once

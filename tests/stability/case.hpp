@@ -44,7 +44,8 @@ std::vector<Case> statistics_cases();
 std::vector<Case> coverage_cases();
 std::vector<Case> law_cases();
 
-/// A sum of equal weights: each is rounded alike, by up to half of 2^-37 of the largest weight (DESIGN, Kernels).
+/// A sum of equal weights: each is rounded alike, by up to half of 2^-37 of the largest weight (docs/physics.md,
+/// section 7).
 constexpr double kQuantumOfTotal = 1e-11;
 
 /// "value (off by x)" and whether |found − exact| ≤ 4·error + slack·|exact|.

@@ -26,8 +26,8 @@ struct Peak {
   Long exponent = 0.0L;  ///< (n+1)·log(n·h), which a rounding of its factors is multiplied by
 };
 
-/// PHYSICS section 2, with d = 0 and F₀ = rho, from the components of the two directions; normal +z. cos^(n+1) is
-/// taken by the sine, so long double too loses nothing to cancellation.
+/// docs/physics.md, section 2, with d = 0 and F₀ = rho, from the components of the two directions; normal +z. cos^(n+1)
+/// is taken by the sine, so long double too loses nothing to cancellation.
 Peak exact_peak(Long rho, Long n, const vec3& i, const vec3& o) {
   const Long x = static_cast<Long>(i.x) + o.x, y = static_cast<Long>(i.y) + o.y, z = static_cast<Long>(i.z) + o.z;
   const Long across = x * x + y * y, square = across + z * z, u = 0.5L * std::sqrt(square);

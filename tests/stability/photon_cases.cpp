@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // First photons from 10⁻¹² to 10⁶ expected ones, a peak over 10⁻⁹ of noise, and shots numbered near 2³² and 2⁴⁰:
 // the device's shots against a reference that shares nothing with kernels/ but the definition of its random numbers
-// (PHYSICS section 5, shared/photon.h): Philox of tests/reference, inversion in long double. Times in ns.
+// (docs/physics.md, section 5, shared/photon.h): Philox of tests/reference, inversion in long double. Times in ns.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -9,7 +9,8 @@
 namespace clray_test {
 
 /// What a comparison allows beyond 4 standard errors, relative: results are sums of integers whose unit is up to
-/// 2⁻³⁷ of the largest weight (DESIGN, Kernels), half of which every sample may be off in the same direction.
+/// 2⁻³⁷ of the largest weight (docs/physics.md, section 7), half of which every sample may be off in the same
+/// direction.
 constexpr double kQuantum = 1e-11;
 
 /// A doctest::Approx whose epsilon is relative to the values alone: its own adds 1, and so passes any small number.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Exact answers for tests and benchmarks. Nothing here comes from kernels/ or host/: single scattering A = ∫ f μ_i μ_o
-// dA worked out by hand (PHYSICS section 1) and, for convex polyhedra, facet by facet. m, s, sr.
+// dA worked out by hand (docs/physics.md, section 1) and, for convex polyhedra, facet by facet. m, s, sr.
 #pragma once
 
 #include <functional>
@@ -38,7 +38,8 @@ Pulse lambert_cylinder_side(double rho, double radius, double length);
 /// [sin α + (π − α) cos α]/π: Lambert sphere's phase function, 1 at α = 0.
 double lambert_phase(double alpha);
 
-/// Monostatic A of a square metre of Ashikhmin-Shirley facet at a cosine (PHYSICS section 3 with h = s, u = 1).
+/// Monostatic A of a square metre of Ashikhmin-Shirley facet at a cosine (docs/physics.md, section 2,
+/// with h = s, u = 1).
 double ashikhmin_shirley_facet(double rho, double d, double n, double mu);
 /// Monostatic A of an Ashikhmin-Shirley sphere: specular part R²/4·s·F0·(n+1)/(n+2), diffuse part by quadrature.
 double ashikhmin_shirley_sphere(double rho, double d, double n, double radius);

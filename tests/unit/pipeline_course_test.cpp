@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The course of a pass: what it asks for, step by step, under errors that are made up; and that a course taken from the
-// state of another goes on alike. Expected steps follow from the rule (PHYSICS section 6) by hand.
+// state of another goes on alike. Expected steps follow from the rule (docs/physics.md, section 6) by hand.
 #include <doctest/doctest.h>
 
 #include <cmath>

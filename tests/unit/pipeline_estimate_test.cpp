@@ -147,7 +147,8 @@ TEST_CASE("the jackknife of a mean is its standard error; of a ratio the lineari
 }
 
 TEST_CASE("Poisson's upper bound leaves 5 % to as few hits") {
-  // No hits: -ln 0.05 = 2.99573; PHYSICS rounds it up to 3.0, which errs on the safe side by 0.15 %.
+  // No hits: -ln 0.05 = 2.99573; docs/physics.md, section 6, rounds it up to 3.0, which errs on the safe side by 0.15
+  // %.
   CHECK(poisson_upper95(0) == 3.0);
   CHECK(poisson_upper95(0) >= -std::log(0.05));
   CHECK(poisson_upper95(0) < -std::log(0.05) * 1.0015);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// First-photon statistics against closed forms and the exact distribution (PHYSICS section 5), at 10^7 shots.
+// First-photon statistics against closed forms and the exact distribution (docs/physics.md, section 5), at 10^7 shots.
 #include <doctest/doctest.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Energy books on the host: the mean over the views, per variant and band (PHYSICS section 4).
+// Energy books on the host: the mean over the views, per variant and band (docs/physics.md, section 4).
 #include "pipeline/detector/books.hpp"
 
 #include <algorithm>

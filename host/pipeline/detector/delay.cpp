@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The delay camera on the host: its window, moments of delay, bins with their errors and bounds (PHYSICS sections 1,
-// 6).
+// The delay camera on the host: its window, moments of delay, bins with their errors and bounds (docs/physics.md,
+// sections 1, 4 and 6).
 #include <fmt/format.h>
 
 #include <algorithm>

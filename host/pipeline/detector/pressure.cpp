@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Radiation pressure on the host: force and torque coefficients, with the shares of each component (PHYSICS section 4).
+// Radiation pressure on the host: force and torque coefficients, with the shares of each component (docs/physics.md,
+// section 4).
 #include <cmath>
 
 #include "pipeline/detector/books.hpp"
