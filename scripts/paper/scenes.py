@@ -8,7 +8,7 @@ import os
 import re
 import shutil
 
-from paper_data import LEVELS, LOBES, RHO, WIDTHS
+from data import LEVELS, LOBES, RHO, WIDTHS
 
 BODIES = ("hexprism", "cylinder", "box_wing")
 SHARE = {"diffuse": 0.8, "specular": 0.2}  # d of the paper's equation 9
@@ -21,7 +21,7 @@ def without_variants(text):
 
 
 def set_keys(text, section, keys):
-    """`text` with the lines of one section ("[motion]") replaced where a key is named, or added; None drops the section."""
+    """`text` with the lines of a section ("[motion]") replaced where a key is named, or added; None drops it."""
     match = re.search(rf"^{re.escape(section)}\n(?:(?!\[).*\n?)*", text, re.M)
     if not match:
         raise ValueError(f"no section {section}")
@@ -84,7 +84,7 @@ def split_front(scenes):
 
 
 def parts_scene(meshes, scenes):
-    """Figure 1: the box-wing at 0 degrees, each part in turn with each surface and the others black; returns its path."""
+    """Figure 1: the box-wing at 0 degrees, each part in turn with each surface, the others black; returns its path."""
     split_front(scenes)
     with open(f"{meshes}/box_wing.toml", encoding="utf-8") as file:
         text = without_variants(file.read())
@@ -95,7 +95,8 @@ def parts_scene(meshes, scenes):
     text = set_keys(
         text,
         "[[component]]",
-        {"file": '"box_wing_parts.obj"', "material": None, "materials": '{ front = "front", box = "box", wing = "wing" }'},
+        {"file": '"box_wing_parts.obj"', "material": None,
+         "materials": '{ front = "front", box = "box", wing = "wing" }'},
     )
     for level in LEVELS:
         for lobe in LOBES:
@@ -106,7 +107,8 @@ def parts_scene(meshes, scenes):
                         f'{{ name = "{other}", rho = {RHO[level] if other == part else 0.0}, {surface} }}'
                         for other in PARTS
                     ]
-                    text += f'\n[[variant]]\nname = "{level}-{lobe}-{width}-{part}"\nmaterial = [{", ".join(entries)}]\n'
+                    text += f'\n[[variant]]\nname = "{level}-{lobe}-{width}-{part}"\n'
+                    text += f'material = [{", ".join(entries)}]\n'
     path = f"{scenes}/box_wing_parts.toml"
     with open(path, "w", encoding="utf-8") as file:
         file.write(text)

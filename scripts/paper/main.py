@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Traces what the paper's figures need, then draws them and works out the numbers; called by scripts/paper.
+"""Traces what the paper's figures need, then draws them and works out the numbers; called by scripts/paper/run.
 
 Order: sessions of the three bodies (figures 3, 5, 7), the parts of the box-wing (figure 1), pictures (2, 4, 6).
 """
@@ -12,15 +12,16 @@ import sys
 import time
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-import paper_figures  # noqa: E402
-import paper_numbers  # noqa: E402
-import paper_scenes  # noqa: E402
-from paper_data import Body, read_summary  # noqa: E402
+import figures  # noqa: E402
+import measures  # noqa: E402
+import scenes  # noqa: E402
+from data import Body, read_summary  # noqa: E402
 
-ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 PARTS_RAYS = 1 << 22  # figure 1 shows single bins of faint wings
 
-# figure: body, step in degrees, orientations, pixels of one picture, exposure in stops, Lambert instead of the scene's surface
+# figure: body, step in degrees, orientations, pixels of one picture, exposure in stops, Lambert instead of the
+# scene's surface
 PICTURES = {
     2: ("hexprism", 15, 3, (480, 480), 0.5, False),
     4: ("cylinder", 45, 3, (480, 480), 0.0, True),
@@ -29,7 +30,7 @@ PICTURES = {
 
 
 def arguments():
-    parser = argparse.ArgumentParser(prog="scripts/paper")
+    parser = argparse.ArgumentParser(prog="scripts/paper/run")
     parser.add_argument("--out", default="clray-out/paper")
     parser.add_argument("--device", default="cpu")
     parser.add_argument("--rays", type=int, default=131072)
@@ -65,28 +66,28 @@ def main():
     options = arguments()
     runner = Runner(options)
     os.makedirs(f"{options.out}/runs", exist_ok=True)
-    scenes, meshes = f"{options.out}/scenes", f"{ROOT}/meshes"
-    paper_scenes.copy_meshes(meshes, scenes)
+    folder_of_scenes, meshes = f"{options.out}/scenes", f"{ROOT}/meshes"
+    scenes.copy_meshes(meshes, folder_of_scenes)
     bodies = {}
-    for name in paper_scenes.BODIES:
+    for name in scenes.BODIES:
         # A relative path keeps the digests' and tables' headers free of this machine's folders.
         scene = os.path.relpath(f"{meshes}/{name}.toml")
         bodies[name] = Body(runner.clray(scene, name, ["--rays", str(options.rays)]))
-    parts = runner.clray(paper_scenes.parts_scene(meshes, scenes), "box_wing_parts", ["--rays", str(PARTS_RAYS)])
+    parts = runner.clray(scenes.parts_scene(meshes, folder_of_scenes), "box_wing_parts", ["--rays", str(PARTS_RAYS)])
     pictures = {}
     for figure, (name, step, count, size, exposure, lambert) in PICTURES.items():
-        scene = paper_scenes.picture_scene(meshes, scenes, name, step, count, size, exposure, lambert)
+        scene = scenes.picture_scene(meshes, folder_of_scenes, name, step, count, size, exposure, lambert)
         folder = runner.clray(scene, f"{name}_picture", [])
         views = read_summary(folder)["detectors"]["rgb"]["orientations"]
         pictures[figure] = [
             (f"{folder}/rgb-{i:04d}.png", step * i, size, f"{meshes}/{name}.obj", views[i]) for i in range(count)
         ]
     runner.say("drawing")
-    paper_figures.draw_all(options.out, bodies, parts, pictures)
+    figures.draw_all(options.out, bodies, parts, pictures)
     runner.say("working out the numbers")
-    text = paper_numbers.write_all(options.out, bodies, parts)
+    text = measures.write_all(options.out, bodies, parts)
     if options.docs:
-        paper_numbers.update_docs(f"{ROOT}/docs/paper.md", text)
+        measures.update_docs(f"{ROOT}/docs/paper.md", text)
         os.makedirs(f"{ROOT}/docs/paper", exist_ok=True)
         for figure in range(1, 8):
             shutil.copyfile(f"{options.out}/figure{figure}.png", f"{ROOT}/docs/paper/figure{figure}.png")

@@ -1,15 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The numbers behind docs/paper.md: what the paper says of its figures, measured on ours. Writes numbers.md and brightness.csv.
+"""The numbers behind docs/paper.md: what the paper says of its figures, measured on ours.
 
-Photons are expected signal photons per shot; turns and half turns are averaged without their last orientation, the first again.
+Writes numbers.md and brightness.csv. Photons are expected signal photons per shot. Turns and half turns are averaged
+without their last orientation, which is the first again.
 """
 
 import math
 import statistics
 
-from paper_data import LEVELS, LOBES, RHO, SETS, WIDTHS, rows_of
-from paper_figures import FIGURE1_SET, SESSION_SETS, part_rates
-from paper_scenes import BODIES, SHARE
+from data import LEVELS, LOBES, RHO, SETS, WIDTHS, rows_of
+from figures import FIGURE1_SET, SESSION_SETS, part_rates
+from scenes import BODIES, SHARE
 
 TITLES = {"hexprism": "prism", "cylinder": "cylinder", "box_wing": "box-wing"}
 NOISE_PER_NS, RATE_HZ = 0.001, 2000.0
@@ -76,7 +77,8 @@ def brightness(out, bodies):
                 values, session = bodies[name].photons[which], bodies[name].summary["session"][which]
                 counts = [session[key] for key in ("shots", "signal", "noise", "none")]
                 mean = bodies[name].mean_photons(which)
-                file.write(f"{name},{which},{mean:.6g},{min(values):.6g},{max(values):.6g},{','.join(map(str, counts))}\n")
+                file.write(f"{name},{which},{mean:.6g},{min(values):.6g},{max(values):.6g},")
+                file.write(",".join(map(str, counts)) + "\n")
     for which in SETS:
         cells = []
         for name in BODIES:
@@ -148,7 +150,7 @@ def figure1(bodies, parts_folder):
 
 
 def session_harmonics(body, name):
-    """From the recorded shots alone, signal or noise: median delay in the window of figure 3 for 72 parts of the turn."""
+    """From the recorded shots, signal or noise: median delay in the window of figure 3 for 72 parts of the turn."""
     session, last = body.session(name), float(body.totals[name][-1]["time_s"])
     parts = [[] for _ in range(72)]
     for time_s, delay_ns in zip(session.time_s, session.delay_ns):
@@ -208,7 +210,8 @@ def figure5(bodies):
             ]
         )
     header = ["surface", "bottom-on: light in one bin", "recorded photons within a bin of the bottom", "specular share"]
-    header += ["brighter than at 0°, 44°", "side-on: light within 0.5 ns of the ridge", "rms width (ns): 0°, widest, 90°"]
+    header += ["brighter than at 0°, 44°", "side-on: light within 0.5 ns of the ridge"]
+    header += ["rms width (ns): 0°, widest, 90°"]
     return table(header, rows)
 
 
@@ -235,7 +238,8 @@ def bin_noise(bodies):
             light += float(row["intensity_m2_per_sr_per_ns"])
             error += float(row["standard_error"])
         summary = bodies[name].summary
-        rows.append([TITLES[name], f"{summary['rays']:,}", str(summary["orientations"]), f"{100 * error / light:.1f} %"])
+        rays, orientations = f"{summary['rays']:,}", str(summary["orientations"])
+        rows.append([TITLES[name], rays, orientations, f"{100 * error / light:.1f} %"])
     return table(["body", "rays per orientation", "orientations", "standard error of a bin, mean over the light"], rows)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Edges of a mesh as a picture of clray's sees them, for figures 2, 4 and 6: facets of equal brightness have no outline.
+"""Edges of a mesh as a picture of clray's sees them, for figures 2, 4 and 6: facets of equal brightness have none.
 
 An edge is drawn where its two faces turn by more than 10 degrees, or where there is one face alone. Metres; pixels.
 """

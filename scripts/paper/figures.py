@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Draws figures 1-7 with gnuplot from the runs' own files, and writes figure1.csv.
 
-Called by paper_run.py. Axes: delay in ns after a path by way of the body's origin, time in s, photons per ns and shot.
+Called by main.py. Axes: delay in ns after a path by way of the body's origin, time in s, photons per ns and shot.
 """
 
 import subprocess
 import sys
 
-from paper_data import rows_of
-from paper_edges import visible_edges
+from data import rows_of
+from edges import visible_edges
 
 FIGURE1_SET = "medium-specular-dull"
 SESSION_SETS = ("low-diffuse-dull", "low-specular-dull", "medium-diffuse-dull", "medium-specular-dull")
@@ -25,7 +25,8 @@ COLOURS = {"front": "#c2410c", "box": "#6b7280", "wing": "#0b4f94"}
 
 
 def gnuplot(script):
-    done = subprocess.run(["gnuplot", "-d", "-"], input=script, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    done = subprocess.run(["gnuplot", "-d", "-"], input=script, text=True, stdout=subprocess.PIPE,
+                          stderr=subprocess.STDOUT)
     if done.returncode != 0:
         sys.exit(f"paper: gnuplot failed:\n{done.stdout}")
 
@@ -74,11 +75,13 @@ def pulse(out, parts_folder):
     gnuplot(
         terminal(f"{out}/figure1.png", 1200, 640)
         + "set datafile separator comma\nset key top right reverse Left spacing 1.25 samplen 2\n"
-        + "set xlabel 'delay (ns), zero at the centre of the body'\nset ylabel 'received intensity (photons/ns per shot)'\n"
+        + "set xlabel 'delay (ns), zero at the centre of the body'\n"
+        + "set ylabel 'received intensity (photons/ns per shot)'\n"
         + f"set xrange [-20:20]\nset yrange [0:{top:.4g}]\nset xtics 5\nset mxtics 5\n"
         + f"set label 'near wing' at -12.5,{2.2 * wing_top:.5g} center textcolor rgb '{COLOURS['wing']}'\n"
         + f"set label 'far wing' at 12.5,{2.2 * wing_top:.5g} center textcolor rgb '{COLOURS['wing']}'\n"
-        + f"plot {plots}, {quoted(table)} using 1:2 every ::1 with lines linewidth 1.6 linecolor rgb '{INK}' title 'together'\n"
+        + f"plot {plots}, {quoted(table)} using 1:2 every ::1 with lines linewidth 1.6 linecolor rgb '{INK}' "
+        + "title 'together'\n"
     )
 
 
@@ -114,8 +117,10 @@ def pictures(out, figure, shots, crop, columns):
 def sessions(out, figure, body, delays):
     """Delay against time, a dot for each shot that recorded a photon, signal or noise alike, as a station sees them."""
     last = float(body.totals[SESSION_SETS[0]][-1]["time_s"])
-    script = terminal(f"{out}/figure{figure}.png", 1500, 1040) + "set datafile separator comma\nunset key\nset multiplot\n"
-    script += f"set xrange [0:{last:g}]\nset yrange [{delays[0]}:{delays[1]}]\nset xtics {last / 4:g}\nset mxtics 5\nset mytics 2\n"
+    script = terminal(f"{out}/figure{figure}.png", 1500, 1040)
+    script += "set datafile separator comma\nunset key\nset multiplot\n"
+    script += f"set xrange [0:{last:g}]\nset yrange [{delays[0]}:{delays[1]}]\nset xtics {last / 4:g}\n"
+    script += "set mxtics 5\nset mytics 2\n"
     for i, name in enumerate(SESSION_SETS):
         column, row = i % 2, i // 2
         left, bottom = 0.058 + 0.487 * column, 0.57 - 0.488 * row

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Reads what clray writes: FITS images of delay histograms, tables of totals, sessions, summaries.
 
-Used by paper_run.py and its figures and numbers. Units as in the files: m^2/sr, ns, s. Standard library only.
+Used by main.py, figures.py and measures.py. Units as in the files: m^2/sr, ns, s. Standard library only.
 """
 
 import array
