@@ -22,7 +22,7 @@ function(clray_generate_table table macro)
     endif()
   endforeach()
   file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/generated/${table}_all.inc CONTENT
-       "// Made by cmake/GenerateTables.cmake from kernels/${table}/${table}.def.\n${numbers}${includes}${list}\n" @ONLY)
+       "// Made by cmake/GenerateTables.cmake from ${table}.def.\n${numbers}${includes}${list}\n" @ONLY)
 endfunction()
 
 clray_generate_table(brdf BRDF)

@@ -30,9 +30,7 @@ CLRAY_FN f64 brdf_ashikhmin_shirley_fresnel(f64 sf0, f64 v) {
 }
 
 /// s·f0
-CLRAY_FN f64 brdf_ashikhmin_shirley_sf0(const CLRAY_GLOBAL ClrayMaterial* m) {
-  return (1.0 - m->p[1]) * m->p[3];
-}
+CLRAY_FN f64 brdf_ashikhmin_shirley_sf0(const CLRAY_GLOBAL ClrayMaterial* m) { return (1.0 - m->p[1]) * m->p[3]; }
 
 /// Diffuse part over g(mu_i)·g(mu_o).
 CLRAY_FN f64 brdf_ashikhmin_shirley_diffuse(const CLRAY_GLOBAL ClrayMaterial* m) {

@@ -10,9 +10,7 @@
 #include "brdf/brdf.h"
 #include "brdf/quadrature.h"
 
-CLRAY_FN f64 brdf_ggx_l(f64 alpha, f64 mu) {
-  return sqrt(fma(alpha, alpha, (1.0 - alpha) * (1.0 + alpha) * mu * mu));
-}
+CLRAY_FN f64 brdf_ggx_l(f64 alpha, f64 mu) { return sqrt(fma(alpha, alpha, (1.0 - alpha) * (1.0 + alpha) * mu * mu)); }
 
 /// D for cos² and sin² of the half vector's angle.
 CLRAY_FN f64 brdf_ggx_d(f64 alpha, f64 cos2, f64 sin2) {

@@ -27,9 +27,7 @@ CLRAY_FN i32 brdf_tabulated_cell(const CLRAY_GLOBAL f64* axis, i32 count, f64 x,
 }
 
 /// a at weight 0, b at weight 1.
-CLRAY_FN f64 brdf_tabulated_mix(f64 a, f64 b, f64 weight) {
-  return fma(weight, b, fma(-weight, a, a));
-}
+CLRAY_FN f64 brdf_tabulated_mix(f64 a, f64 b, f64 weight) { return fma(weight, b, fma(-weight, a, a)); }
 
 CLRAY_FN f64 brdf_tabulated_value(const CLRAY_GLOBAL f64* t, f64 theta_i, f64 theta_o, f64 phi) {
   const i32 n_i = (i32)t[0], n_o = (i32)t[1], n_phi = (i32)t[2];

@@ -10,9 +10,9 @@
 #define CLRAY_DELAY_LARGEST 1u
 #define CLRAY_DELAY_HITS 2u
 
-static void detector_delay_connect(const Buffers *g, Tally *tally, u32 n, u32 c, const Light *weights, f64 length) {
+static void detector_delay_connect(const Buffers* g, Tally* tally, u32 n, u32 c, const Light* weights, f64 length) {
   const u32 d = CLRAY_FIRST_delay + n;
-  const __global f64 *settings = g->settings + g->detectors[d].settings;
+  const __global f64* settings = g->settings + g->detectors[d].settings;
   const u32 bins = (u32)settings[0];
   const f64 x = (length - settings[1u + 3u * c]) * settings[2u + 3u * c];
   const u32 bin = x < 0.0 ? 0u : (x < (f64)bins ? 1u + (u32)floor(x) : bins + 1u);
@@ -23,12 +23,12 @@ static void detector_delay_connect(const Buffers *g, Tally *tally, u32 n, u32 c,
     accumulate(g->sums, g->wide, sum_row(g, d, CLRAY_DELAY_BINS, row) + bin, w, g->pass->weight_scale,
                g->pass->weight_limit, g->counters);
     atomic_inc(g->counts + sum_row(g, d, CLRAY_DELAY_HITS, row) + bin);
-    i64 *largest = tally->kept + CLRAY_KEPT_delay_largest + (n * CLRAY_LANES + lane) * CLRAY_CONNECTIONS + c;
+    i64* largest = tally->kept + CLRAY_KEPT_delay_largest + (n * CLRAY_LANES + lane) * CLRAY_CONNECTIONS + c;
     *largest = max(*largest, (i64)as_uint(convert_float_rtp(w)));
   }
 }
 
-static void detector_delay_flush(const Buffers *g, const Tally *tally, u32 n) {
+static void detector_delay_flush(const Buffers* g, const Tally* tally, u32 n) {
   const u32 d = CLRAY_FIRST_delay + n;
   for (u32 lane = 0; lane < CLRAY_LANES; ++lane) {
     for (u32 c = 0; c < CLRAY_CONNECTIONS; ++c) {

@@ -4,14 +4,14 @@
 #ifndef CLRAY_DETECTOR_INTENSITY_CL
 #define CLRAY_DETECTOR_INTENSITY_CL
 
-static void detector_intensity_connect(const Buffers *g, Tally *tally, u32 n, u32 c, const Light *weights, f64 length) {
+static void detector_intensity_connect(const Buffers* g, Tally* tally, u32 n, u32 c, const Light* weights, f64 length) {
   (void)n;
   const f64 scale = g->pass->weight_scale, limit = g->pass->weight_limit;
   for (u32 lane = 0; lane < CLRAY_LANES; ++lane) {
     const f64 w = weights->lane[lane];
     if (w == 0.0) continue;
     const u64 at = sum_row(g, CLRAY_FIRST_intensity, 0u, connection_row(g, tally, lane, c));
-    i64 *own = tally->kept + CLRAY_KEPT_intensity_moments + 3u * (lane * CLRAY_CONNECTIONS + c);
+    i64* own = tally->kept + CLRAY_KEPT_intensity_moments + 3u * (lane * CLRAY_CONNECTIONS + c);
     keep(g, own, at, w, scale, limit);
 #if CLRAY_COUNT_delay
     const f64 tau = (length - g->pass->path_middle_m) * g->pass->inv_path_per_m;
@@ -21,7 +21,7 @@ static void detector_intensity_connect(const Buffers *g, Tally *tally, u32 n, u3
   }
 }
 
-static void detector_intensity_flush(const Buffers *g, const Tally *tally, u32 n) {
+static void detector_intensity_flush(const Buffers* g, const Tally* tally, u32 n) {
   (void)n;
   for (u32 lane = 0; lane < CLRAY_LANES; ++lane) {
     for (u32 c = 0; c < CLRAY_CONNECTIONS; ++c) {

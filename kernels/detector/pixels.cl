@@ -4,14 +4,14 @@
 #ifndef CLRAY_DETECTOR_PIXELS_CL
 #define CLRAY_DETECTOR_PIXELS_CL
 
-static void detector_pixels_hit(const Buffers *g, Tally *tally, u32 n, u32 bounce, const Surface *surface) {
+static void detector_pixels_hit(const Buffers* g, Tally* tally, u32 n, u32 bounce, const Surface* surface) {
   (void)g;
   (void)n;
   (void)surface;
   if (bounce == 0u) ++tally->kept[CLRAY_KEPT_pixels_covered];
 }
 
-static void detector_pixels_connect(const Buffers *g, Tally *tally, u32 n, u32 c, const Light *weights, f64 length) {
+static void detector_pixels_connect(const Buffers* g, Tally* tally, u32 n, u32 c, const Light* weights, f64 length) {
   (void)n;
   (void)c;
   (void)length;
@@ -22,7 +22,7 @@ static void detector_pixels_connect(const Buffers *g, Tally *tally, u32 n, u32 c
   }
 }
 
-static void detector_pixels_flush(const Buffers *g, const Tally *tally, u32 n) {
+static void detector_pixels_flush(const Buffers* g, const Tally* tally, u32 n) {
   (void)n;
   const u32 covered = (u32)tally->kept[CLRAY_KEPT_pixels_covered];
   if (covered) atomic_add(g->counts + sum_row(g, CLRAY_FIRST_pixels, 1u, tally->view) + (tally->stream - 1u), covered);

@@ -9,15 +9,15 @@
 #define CLRAY_PRESSURE_THERMAL 2u  // key
 
 /// One exchange of momentum `push` (away from the light is along the ray) at a surface.
-static void pressure_record(const Buffers *g, Tally *tally, u32 n, u32 lane, const Surface *surface, vec3 push) {
+static void pressure_record(const Buffers* g, Tally* tally, u32 n, u32 lane, const Surface* surface, vec3 push) {
   const f64 scale = g->pass->unit_scale;
   const vec3 lever = v3_scale(g->pass->inv_lever_per_m, v3_sub(surface->point, v3_load(g->pass->reference)));
   const vec3 torque = v3_cross(lever, push);
   const f64 values[6] = {push.x, push.y, push.z, torque.x, torque.y, torque.z};
   const u64 at = sum_row(g, CLRAY_FIRST_pressure + n, 0u, lane_row(g, tally, lane)) + surface->component * 6u;
 #ifdef CLRAY_KEPT_pressure_push
-  i64 *own = tally->kept + CLRAY_KEPT_pressure_push +
-             ((n * CLRAY_LANES + lane) * CLRAY_COMPONENTS + surface->component) * 6u;
+  i64* own =
+      tally->kept + CLRAY_KEPT_pressure_push + ((n * CLRAY_LANES + lane) * CLRAY_COMPONENTS + surface->component) * 6u;
   for (u32 k = 0; k < 6u; ++k) keep(g, own + k, at + k, values[k], scale, CLRAY_UNIT_LIMIT);
 #else
   for (u32 k = 0; k < 6u; ++k) accumulate(g->sums, g->wide, at + k, values[k], scale, CLRAY_UNIT_LIMIT, g->counters);
@@ -25,10 +25,10 @@ static void pressure_record(const Buffers *g, Tally *tally, u32 n, u32 lane, con
 }
 
 /// Momentum of the light that arrives, less what the reflected light and the heat radiated along the normal take along.
-static void detector_pressure_scatter(const Buffers *g, Tally *tally, u32 n, u32 bounce, const Surface *surface,
-                                      const Path *path, const Scattering *s) {
+static void detector_pressure_scatter(const Buffers* g, Tally* tally, u32 n, u32 bounce, const Surface* surface,
+                                      const Path* path, const Scattering* s) {
   (void)bounce;
-  const __global f64 *settings = g->settings + g->detectors[CLRAY_FIRST_pressure + n].settings;
+  const __global f64* settings = g->settings + g->detectors[CLRAY_FIRST_pressure + n].settings;
   for (u32 lane = 0; lane < CLRAY_LANES; ++lane) {
     const f64 before = s->before.lane[lane];
     vec3 push = v3_fma(-path->throughput.lane[lane], s->out, v3_scale(-before, surface->toward));
@@ -41,7 +41,7 @@ static void detector_pressure_scatter(const Buffers *g, Tally *tally, u32 n, u32
   }
 }
 
-static void detector_pressure_flush(const Buffers *g, const Tally *tally, u32 n) {
+static void detector_pressure_flush(const Buffers* g, const Tally* tally, u32 n) {
 #ifdef CLRAY_KEPT_pressure_push
   const u32 size = CLRAY_COMPONENTS * 6u;
   for (u32 lane = 0; lane < CLRAY_LANES; ++lane) {

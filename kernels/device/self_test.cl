@@ -7,7 +7,7 @@
 
 /// `in`: three numbers a, b, c per item. `out`: the bits of CLRAY_SELF_TEST_RESULTS results per item.
 /// `sums`: three zeros; every item adds its integers to them.
-__kernel void self_test(const __global f64 *in, __global u64 *out, volatile __global i64 *sums, u32 items) {
+__kernel void self_test(const __global f64* in, __global u64* out, volatile __global i64* sums, u32 items) {
   const u32 id = (u32)get_global_id(0);
   if (id >= items) {
     return;
@@ -15,7 +15,7 @@ __kernel void self_test(const __global f64 *in, __global u64 *out, volatile __gl
   const f64 a = in[3u * id];
   const f64 b = in[3u * id + 1u];
   const f64 c = in[3u * id + 2u];
-  __global u64 *result = out + CLRAY_SELF_TEST_RESULTS * id;
+  __global u64* result = out + CLRAY_SELF_TEST_RESULTS * id;
   result[0] = CLRAY_AS_U64(a * b + c);  // lint: allow product-sum (this must not be fused)
   result[1] = CLRAY_AS_U64(fma(a, b, c));
   result[2] = CLRAY_AS_U64(a / b);

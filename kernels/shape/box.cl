@@ -48,9 +48,7 @@ CLRAY_FN f64 shape_box_support(const CLRAY_GLOBAL f64* p, vec3 u) {
   return 0.5 * fma(p[0], fabs(u.x), fma(p[1], fabs(u.y), p[2] * fabs(u.z)));
 }
 
-CLRAY_FN f64 shape_box_area(const CLRAY_GLOBAL f64* p) {
-  return 2.0 * fma(p[0], p[1], fma(p[1], p[2], p[2] * p[0]));
-}
+CLRAY_FN f64 shape_box_area(const CLRAY_GLOBAL f64* p) { return 2.0 * fma(p[0], p[1], fma(p[1], p[2], p[2] * p[0])); }
 
 CLRAY_FN i32 shape_box_traits(const CLRAY_GLOBAL f64* p) {
   (void)p;

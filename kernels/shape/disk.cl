@@ -27,9 +27,7 @@ CLRAY_FN ShapeSurface shape_disk_surface(const CLRAY_GLOBAL f64* p, vec3 o, vec3
   return s;
 }
 
-CLRAY_FN f64 shape_disk_support(const CLRAY_GLOBAL f64* p, vec3 u) {
-  return p[0] * sqrt(fma(u.x, u.x, u.y * u.y));
-}
+CLRAY_FN f64 shape_disk_support(const CLRAY_GLOBAL f64* p, vec3 u) { return p[0] * sqrt(fma(u.x, u.x, u.y * u.y)); }
 
 CLRAY_FN f64 shape_disk_area(const CLRAY_GLOBAL f64* p) {
   return p[1] < p[0] ? CLRAY_PI * ((p[0] - p[1]) * (p[0] + p[1])) : 0.0;

@@ -7,9 +7,7 @@
 #define CLRAY_SHAPE_PARABOLOID_CL
 #include "shape/span.h"
 
-CLRAY_FN f64 paraboloid_c(const CLRAY_GLOBAL f64* p) {
-  return p[0] * p[0] / p[1];
-}
+CLRAY_FN f64 paraboloid_c(const CLRAY_GLOBAL f64* p) { return p[0] * p[0] / p[1]; }
 
 /// Inside of the infinite paraboloid.
 CLRAY_FN ShapeSpan span_paraboloid(f64 k, vec3 o, vec3 d) {

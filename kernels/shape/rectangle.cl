@@ -30,9 +30,7 @@ CLRAY_FN f64 shape_rectangle_support(const CLRAY_GLOBAL f64* p, vec3 u) {
   return 0.5 * fma(p[0], fabs(u.x), p[1] * fabs(u.y));
 }
 
-CLRAY_FN f64 shape_rectangle_area(const CLRAY_GLOBAL f64* p) {
-  return p[0] * p[1];
-}
+CLRAY_FN f64 shape_rectangle_area(const CLRAY_GLOBAL f64* p) { return p[0] * p[1]; }
 
 CLRAY_FN i32 shape_rectangle_traits(const CLRAY_GLOBAL f64* p) {
   (void)p;

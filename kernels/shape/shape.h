@@ -7,9 +7,9 @@
 #include "shared/abi.h"
 
 typedef struct ShapeSurface {
-  vec3 point;    // on the surface, refined (not merely o + t·d)
-  vec3 normal;   // unit, outward (facing +z for open plane shapes), either side may be hit
-  f64 error;     // bound of |computed point - exact surface|, m, in the local frame
+  vec3 point;   // on the surface, refined (not merely o + t·d)
+  vec3 normal;  // unit, outward (facing +z for open plane shapes), either side may be hit
+  f64 error;    // bound of |computed point - exact surface|, m, in the local frame
 } ShapeSurface;
 
 #ifndef __OPENCL_VERSION__
@@ -34,9 +34,9 @@ CLRAY_FN ShapeFacet shape_facet_of(u32 axis, f64 side, f64 offset, u32 round, f6
 //   ShapeSurface shape_X_surface(p, o, d, t, part)   point, normal and error of that hit
 //   f64 shape_X_support(p, u)                        max over the shape of x·u (any u): exact bounds come from it
 //   f64 shape_X_area(p)                              of one side, m²
-//   i32 shape_X_traits(p)                            CLRAY_SHAPE_CLOSED | CLRAY_SHAPE_CONVEX (its surface bounds a convex
-//                                                    body or lies in a plane) | CLRAY_SHAPE_PLANE (no ray leaving it can
-//                                                    hit it again)
+//   i32 shape_X_traits(p)                            CLRAY_SHAPE_CLOSED, CLRAY_SHAPE_CONVEX (its surface bounds a
+//                                                    convex body or lies in a plane), CLRAY_SHAPE_PLANE (no ray
+//                                                    leaving it can hit it again), or several of them
 //   i32 shape_X_facet(p, part, &facet)                whether that part is flat and there, and which face it is (host)
 // with `const CLRAY_GLOBAL f64 *p`. A ray that starts on the outside, moved off by `error` along the normal, must not
 // hit the same spot again: signs of the constant term of a quadratic are to be exact there. `error` therefore also

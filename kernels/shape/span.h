@@ -27,12 +27,8 @@ CLRAY_FN ShapeSpan span_make(f64 enter, f64 leave) {
   s.leave_part = 0u;
   return s;
 }
-CLRAY_FN ShapeSpan span_all(void) {
-  return span_make(-CLRAY_SPAN_FAR, CLRAY_SPAN_FAR);
-}
-CLRAY_FN ShapeSpan span_none(void) {
-  return span_make(CLRAY_SPAN_FAR, -CLRAY_SPAN_FAR);
-}
+CLRAY_FN ShapeSpan span_all(void) { return span_make(-CLRAY_SPAN_FAR, CLRAY_SPAN_FAR); }
+CLRAY_FN ShapeSpan span_none(void) { return span_make(CLRAY_SPAN_FAR, -CLRAY_SPAN_FAR); }
 
 /// Between the roots of a·t² + 2b·t + c, a != 0, disc = b² - a·c >= 0.
 CLRAY_FN ShapeSpan span_roots(f64 a, f64 b, f64 c, f64 disc) {
@@ -111,8 +107,6 @@ CLRAY_FN vec3 disk_point(vec3 o, vec3 d, f64 height, f64 radius) {
   return x;
 }
 
-CLRAY_FN f64 f64_clamp(f64 x, f64 low, f64 high) {
-  return x < low ? low : (x > high ? high : x);
-}
+CLRAY_FN f64 f64_clamp(f64 x, f64 low, f64 high) { return x < low ? low : (x > high ? high : x); }
 
 #endif

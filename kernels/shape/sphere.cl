@@ -36,13 +36,9 @@ CLRAY_FN ShapeSurface shape_sphere_surface(const CLRAY_GLOBAL f64* p, vec3 o, ve
   return s;
 }
 
-CLRAY_FN f64 shape_sphere_support(const CLRAY_GLOBAL f64* p, vec3 u) {
-  return p[0] * v3_length(u);
-}
+CLRAY_FN f64 shape_sphere_support(const CLRAY_GLOBAL f64* p, vec3 u) { return p[0] * v3_length(u); }
 
-CLRAY_FN f64 shape_sphere_area(const CLRAY_GLOBAL f64* p) {
-  return 4.0 * CLRAY_PI * p[0] * p[0];
-}
+CLRAY_FN f64 shape_sphere_area(const CLRAY_GLOBAL f64* p) { return 4.0 * CLRAY_PI * p[0] * p[0]; }
 
 CLRAY_FN i32 shape_sphere_traits(const CLRAY_GLOBAL f64* p) {
   (void)p;

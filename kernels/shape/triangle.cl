@@ -32,13 +32,13 @@ CLRAY_FN RayShear triangle_shear(vec3 o, vec3 d) {
 }
 
 /// A vertex in the ray's frame: x and y across the ray, z along it in units of t.
-CLRAY_FN vec3 triangle_vertex(const CLRAY_GLOBAL f64 *p, const RayShear *r) {
+CLRAY_FN vec3 triangle_vertex(const CLRAY_GLOBAL f64* p, const RayShear* r) {
   const vec3 a = triangle_permute(v3_sub(v3_load(p), r->o), r->axis);
   return v3(fma(-r->sx, a.z, a.x), fma(-r->sy, a.z, a.y), r->sz * a.z);
 }
 
 /// Nearest hit with 0 < t <= t_max: 1, t and barycentric weights (sum 1 to rounding), or 0.
-CLRAY_FN i32 triangle_intersect(const CLRAY_GLOBAL f64 *p, const RayShear *r, f64 t_max, f64 *t_hit, vec3 *weights) {
+CLRAY_FN i32 triangle_intersect(const CLRAY_GLOBAL f64* p, const RayShear* r, f64 t_max, f64* t_hit, vec3* weights) {
   const vec3 a = triangle_vertex(p, r);
   const vec3 b = triangle_vertex(p + 3, r);
   const vec3 c = triangle_vertex(p + 6, r);
@@ -56,12 +56,13 @@ CLRAY_FN i32 triangle_intersect(const CLRAY_GLOBAL f64 *p, const RayShear *r, f6
 }
 
 /// Point, unit normal (counter-clockwise side) and error bound of a hit with these weights.
-CLRAY_FN ShapeSurface triangle_surface(const CLRAY_GLOBAL f64 *p, vec3 weights) {
+CLRAY_FN ShapeSurface triangle_surface(const CLRAY_GLOBAL f64* p, vec3 weights) {
   const vec3 a = v3_load(p), b = v3_load(p + 3), c = v3_load(p + 6);
   ShapeSurface s;
   s.point = v3_fma(weights.x, a, v3_fma(weights.y, b, v3_scale(weights.z, c)));
   s.normal = v3_unit(v3_cross(v3_sub(b, a), v3_sub(c, a)));
-  // gamma_7 of Pharr, Jakob & Humphreys (2016), section 3.9.4, summed over the axes; the factor 2 covers the move itself.
+  // gamma_7 of Pharr, Jakob & Humphreys (2016), section 3.9.4, summed over the axes; the factor 2 covers the move
+  // itself.
   const f64 size_a = fabs(a.x) + fabs(a.y) + fabs(a.z);
   const f64 size_b = fabs(b.x) + fabs(b.y) + fabs(b.z);
   const f64 size_c = fabs(c.x) + fabs(c.y) + fabs(c.z);

@@ -30,14 +30,14 @@ typedef struct ClrayPrimitive {
   u32 id;         // canonical rank: ties go to the smaller
   u32 component;  // index into Scene::components
   u32 flags;      // CLRAY_PRIMITIVE_*
-  u32 planes;     // offset in `shapes` of the planes of its flat parts; CLRAY_NO_PLANES: it shares none with another face
+  u32 planes;  // offset in `shapes` of the planes of its flat parts; CLRAY_NO_PLANES: it shares none with another face
   u32 padding;
 } ClrayPrimitive;
 #define CLRAY_NO_PLANES 0xffffffffu
 
-// Faces that overlap in one plane have one set of coefficients of it, so that a ray meets all of them at one t, exactly.
-// A part's record in `shapes`: unit normal (3), offset (normal·x on the plane), number of the plane (0: this part shares
-// none), and whether the face looks along the normal (1) or against it (-1).
+// Faces that overlap in one plane have one set of coefficients of it, so that a ray meets all of them at one t,
+// exactly. A part's record in `shapes`: unit normal (3), offset (normal·x on the plane), number of the plane (0: this
+// part shares none), and whether the face looks along the normal (1) or against it (-1).
 #define CLRAY_PLANE_OFFSET 3
 #define CLRAY_PLANE_NUMBER 4
 #define CLRAY_PLANE_FACING 5
@@ -63,20 +63,21 @@ typedef struct ClrayInstance {
   f64 box_centre[3];
   f64 box_scale;
   u32 root;
-  u32 moved;           // 0: the part stands in the body frame, nothing to carry
+  u32 moved;  // 0: the part stands in the body frame, nothing to carry
 } ClrayInstance;
 
 /// One orientation of a pass: where its rays start.
 typedef struct ClrayView {
-  f64 toward[3];          // unit vector from the body to where rays start: s for a beam, o for pixels
-  f64 corner[3];          // rays start at corner + u·edge_u + v·edge_v, u and v in (0,1)
+  f64 toward[3];  // unit vector from the body to where rays start: s for a beam, o for pixels
+  f64 corner[3];  // rays start at corner + u·edge_u + v·edge_v, u and v in (0,1)
   f64 edge_u[3], edge_v[3];
-  f64 box_centre[3];      // box frame of the tree at `root`
+  f64 box_centre[3];  // box frame of the tree at `root`
   f64 box_scale;
-  u32 root;               // of the top-level BVH (or of the only one)
+  u32 root;                   // of the top-level BVH (or of the only one)
   u32 first_stratum, strips;  // strata of the beam; 0: its rectangle is sampled evenly
-  u32 grid;               // cells along each edge of the rectangle
-  f64 share_scale;        // share of a ray = CLRAY_SLOT_PARTS·(area of its slot over a cell's)/(widths of strip and slot)·this
+  u32 grid;                   // cells along each edge of the rectangle
+  // The share of a ray is CLRAY_SLOT_PARTS·(area of its slot over a cell's)/(widths of strip and slot) times this.
+  f64 share_scale;
 } ClrayView;
 
 /// One of several to choose from by a uniform number: a view's strips, then the slots of a strip (host/pipeline/
@@ -87,8 +88,8 @@ typedef struct ClrayStratum {
   u32 a, b;   // strip: its first slot and their number; slot: CLRAY_SLOT_* and the part of its cell
 } ClrayStratum;
 // A slot's a: row·grid + column of its cell, which way path lengthens there (the lesser over the greater of its slopes
-// along u and v; where they fall; which is greater). b: shares of the cell's area, in 1/CLRAY_SLOT_PARTS, at the slot's low (bits 0-15)
-// and high end (bits 16-31, plus one), along that way.
+// along u and v; where they fall; which is greater). b: shares of the cell's area, in 1/CLRAY_SLOT_PARTS, at the slot's
+// low (bits 0-15) and high end (bits 16-31, plus one), along that way.
 #define CLRAY_SLOT_CELL 0x3ffffu
 #define CLRAY_SLOT_STEEPNESS_SHIFT 18
 #define CLRAY_SLOT_PARTS 65536
@@ -123,19 +124,19 @@ typedef struct ClrayDetector {
 
 /// What is constant over a pass.
 typedef struct ClrayPass {
-  f64 reference[3];      // reference point of delay and torque
-  f64 path_middle_m;     // moments of delay are of tau = (path - middle)·inv_path, in [-1,1] for one bounce
+  f64 reference[3];   // reference point of delay and torque
+  f64 path_middle_m;  // moments of delay are of tau = (path - middle)·inv_path, in [-1,1] for one bounce
   f64 inv_path_per_m;
-  f64 weight_scale;      // 2^S for weights toward a connection
-  f64 weight_limit;      // larger weights go to the second accumulator
-  f64 unit_scale;        // 2^S for shares of energy and momentum
-  f64 inv_lever_per_m;   // power of two that brings lever arms below 1
-  u32 key0, key1;        // the seed
-  u32 epoch;             // 0 search or plain, 1 confirmation
+  f64 weight_scale;     // 2^S for weights toward a connection
+  f64 weight_limit;     // larger weights go to the second accumulator
+  f64 unit_scale;       // 2^S for shares of energy and momentum
+  f64 inv_lever_per_m;  // power of two that brings lever arms below 1
+  u32 key0, key1;       // the seed
+  u32 epoch;            // 0 search or plain, 1 confirmation
   u32 replicates;
   u32 views;
-  u32 width, height;     // pixels
-  u32 first_lane;        // material-table row of lane 0
+  u32 width, height;  // pixels
+  u32 first_lane;     // material-table row of lane 0
 } ClrayPass;
 
 // Shares of energy and momentum are below this on a first bounce; larger ones go to the second accumulator.
@@ -154,9 +155,17 @@ typedef struct ClrayPass {
 #define CLRAY_COUNTERS 8
 
 // Sizes, asserted in C++ here and on the device by the start-up self-test.
-#define CLRAY_SIZES(X) \
-  X(ClrayMaterial, 120) X(ClrayPrimitive, 32) X(ClrayNode, 112) X(ClrayInstance, 136) X(ClrayView, 152) X(ClrayStratum, 16) \
-  X(ClrayConnection, 48) X(ClrayBlock, 16) X(ClrayDetector, 8) X(ClrayPass, 104)
+#define CLRAY_SIZES(X)   \
+  X(ClrayMaterial, 120)  \
+  X(ClrayPrimitive, 32)  \
+  X(ClrayNode, 112)      \
+  X(ClrayInstance, 136)  \
+  X(ClrayView, 152)      \
+  X(ClrayStratum, 16)    \
+  X(ClrayConnection, 48) \
+  X(ClrayBlock, 16)      \
+  X(ClrayDetector, 8)    \
+  X(ClrayPass, 104)
 #ifdef __cplusplus
 #define CLRAY_ASSERT_SIZE(type, size) static_assert(sizeof(type) == size, "abi.h: " #type);
 CLRAY_SIZES(CLRAY_ASSERT_SIZE)

@@ -7,24 +7,24 @@
 // What a pass reads: constants, where rays start and are connected to, the body, its surfaces, the Sobol numbers (bits
 // reversed), the detectors with their sums and settings, and the strata of the views' beams.
 // Then what it adds to: sums at the first and the second scale, counts, and the counters of events.
-#define CLRAY_BUFFERS(X)                                 \
-  X(const CLRAY_GLOBAL ClrayPass, pass)                  \
-  X(const CLRAY_GLOBAL ClrayView, views)                 \
-  X(const CLRAY_GLOBAL ClrayConnection, connections)     \
-  X(const CLRAY_GLOBAL ClrayNode, nodes)                 \
-  X(const CLRAY_GLOBAL ClrayPrimitive, primitives)       \
-  X(const CLRAY_GLOBAL f64, shapes)                      \
-  X(const CLRAY_GLOBAL ClrayInstance, instances)         \
-  X(const CLRAY_GLOBAL ClrayMaterial, materials)         \
-  X(const CLRAY_GLOBAL f64, tables)                      \
-  X(const CLRAY_GLOBAL u32, directions)                  \
-  X(const CLRAY_GLOBAL ClrayDetector, detectors)         \
-  X(const CLRAY_GLOBAL ClrayBlock, blocks)               \
-  X(const CLRAY_GLOBAL f64, settings)                    \
-  X(const CLRAY_GLOBAL ClrayStratum, strata)             \
-  X(volatile CLRAY_GLOBAL i64, sums)                     \
-  X(volatile CLRAY_GLOBAL i64, wide)                     \
-  X(volatile CLRAY_GLOBAL u32, counts)                   \
+#define CLRAY_BUFFERS(X)                             \
+  X(const CLRAY_GLOBAL ClrayPass, pass)              \
+  X(const CLRAY_GLOBAL ClrayView, views)             \
+  X(const CLRAY_GLOBAL ClrayConnection, connections) \
+  X(const CLRAY_GLOBAL ClrayNode, nodes)             \
+  X(const CLRAY_GLOBAL ClrayPrimitive, primitives)   \
+  X(const CLRAY_GLOBAL f64, shapes)                  \
+  X(const CLRAY_GLOBAL ClrayInstance, instances)     \
+  X(const CLRAY_GLOBAL ClrayMaterial, materials)     \
+  X(const CLRAY_GLOBAL f64, tables)                  \
+  X(const CLRAY_GLOBAL u32, directions)              \
+  X(const CLRAY_GLOBAL ClrayDetector, detectors)     \
+  X(const CLRAY_GLOBAL ClrayBlock, blocks)           \
+  X(const CLRAY_GLOBAL f64, settings)                \
+  X(const CLRAY_GLOBAL ClrayStratum, strata)         \
+  X(volatile CLRAY_GLOBAL i64, sums)                 \
+  X(volatile CLRAY_GLOBAL i64, wide)                 \
+  X(volatile CLRAY_GLOBAL u32, counts)               \
   X(volatile CLRAY_GLOBAL i64, counters)
 
 #endif

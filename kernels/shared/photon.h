@@ -19,9 +19,7 @@
 #define CLRAY_PHOTON_STREAM 0x736c7200u
 
 /// Uniform in [0,1), a multiple of 2^-53.
-CLRAY_FN f64 photon_uniform(u32 high, u32 low) {
-  return (f64)((((u64)high << 32) | (u64)low) >> 11) * 0x1p-53;
-}
+CLRAY_FN f64 photon_uniform(u32 high, u32 low) { return (f64)((((u64)high << 32) | (u64)low) >> 11) * 0x1p-53; }
 
 /// Photons expected from the gate's opening to an edge; never decreases from edge to edge, also when rounded.
 CLRAY_FN f64 photon_expected(const CLRAY_GLOBAL f64* gate, u32 edge, f64 brightness, f64 noise_per_ns) {

@@ -88,11 +88,11 @@ CLRAY_FN vec3 v3_unit(vec3 a) {
   return v3(a.x / l, a.y / l, a.z / l);
 }
 /// Loads three consecutive numbers.
-CLRAY_FN vec3 v3_load(const CLRAY_GLOBAL f64 *p) { return v3(p[0], p[1], p[2]); }
+CLRAY_FN vec3 v3_load(const CLRAY_GLOBAL f64* p) { return v3(p[0], p[1], p[2]); }
 
 /// Two unit vectors that make a right-handed frame (t, b, n) with the unit vector n
 /// (Duff et al. 2017, "Building an orthonormal basis, revisited").
-CLRAY_FN void v3_frame(vec3 n, vec3 *t, vec3 *b) {
+CLRAY_FN void v3_frame(vec3 n, vec3* t, vec3* b) {
   const f64 sign = n.z >= 0.0 ? 1.0 : -1.0;
   const f64 a = -1.0 / (sign + n.z);
   const f64 c = n.x * n.y * a;
