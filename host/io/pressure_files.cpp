@@ -35,7 +35,11 @@ void pressure_table(Writer& writer, const Group& group, const std::string& stem)
       writer.add(stem, "csv"), "radiation force and torque of " + title_of(writer, group.front()->key),
       "sun: unit vector toward the source, body frame; angles deg; C = F c / E m^2; T = torque c / E m^3 about the "
       "reference point; absorbed m^2; *_error: one standard error");
-  table.comment("force in N = C * irradiance / 299792458 m/s; 1361 W/m^2 at 1 au");
+  const Band& band = group.front()->band;
+  if (band.low_nm < band.high_nm)
+    table.comment("light of " + rounded(band.low_nm, 6) + "-" + rounded(band.high_nm, 6) + " nm, " +
+                  rounded(group.front()->source_W_m2, 6) + " W/m^2 of the source");
+  table.comment("force in N = C * irradiance / 299792458 m/s, with the irradiance of this light");
   std::vector<std::string> columns{"orientation", "time_s", "sun_x", "sun_y", "sun_z", "azimuth_deg", "elevation_deg"};
   for (const char* vector : {"C", "T"}) {
     const std::string unit = vector[0] == 'C' ? "_m2" : "_m3";

@@ -74,6 +74,9 @@ Json pressure_entry(const PressureResult& record, const Scene& scene) {
   const auto& c = record.coefficient_m2;
   const auto& t = record.torque_coefficient_m3;
   Json entry{{"sun", vector(record.sun)},
+             {"low_nm", record.band.low_nm},
+             {"high_nm", record.band.high_nm},
+             {"source_W_m2", record.source_W_m2},
              {"force_N_per_W_m2", vector(c.value, 1.0 / kLightSpeed)},
              {"force_standard_error", vector(c.standard_error, 1.0 / kLightSpeed)},
              {"torque_Nm_per_W_m2", vector(t.value, 1.0 / kLightSpeed)},

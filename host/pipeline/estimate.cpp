@@ -105,6 +105,16 @@ Estimate estimate_jackknife(double pooled, const std::vector<double>& left_out) 
   return e;
 }
 
+Estimate sum_of_parts(const Estimate& a, const Estimate& b) {
+  Estimate e = a;
+  e.value += b.value;
+  e.standard_error += b.standard_error;
+  e.low += b.low;
+  e.high += b.high;
+  e.relative_variance_of_variance = std::fmax(a.relative_variance_of_variance, b.relative_variance_of_variance);
+  return e;
+}
+
 double poisson_upper95(std::uint64_t hits) {
   if (hits == 0) return 3.0;
   if (hits > 400) return static_cast<double>(hits) + 1.6449 * std::sqrt(static_cast<double>(hits)) + 2.0;  // normal

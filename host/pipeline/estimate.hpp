@@ -23,6 +23,9 @@ Estimate estimate_mean(const std::vector<double>& replicates);
 /// but r.
 Estimate estimate_jackknife(double pooled, const std::vector<double>& left_out);
 
+/// The sum of estimates from the same points: errors add, as if one error made all of them.
+Estimate sum_of_parts(const Estimate& a, const Estimate& b);
+
 /// Upper 95 % bound of a Poisson mean of which `hits` were seen: 3.0 for none (−ln 0.05), else by inversion.
 double poisson_upper95(std::uint64_t hits);
 

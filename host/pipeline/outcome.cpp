@@ -8,6 +8,7 @@
 
 #include "pipeline/detector/room.hpp"
 #include "pipeline/estimate.hpp"
+#include "scene/spectrum.hpp"
 
 namespace clray {
 namespace {
@@ -113,6 +114,16 @@ ResultKey RoomResults::key(std::size_t v, std::size_t l) const {
   k.band = plan.request.lanes[l].band_name;
   k.orientation = plan.request.first_orientation + v;
   return k;
+}
+
+Band RoomResults::band(std::size_t l) const {
+  const std::vector<Band> own = bands_of(scene, table_row("detector", spec().kind));
+  return own.size() == 1 ? own.front() : plan.request.lanes[l].band;
+}
+
+bool same_record(const ResultKey& a, const ResultKey& b) {
+  return a.detector == b.detector && a.observer == b.observer && a.variant == b.variant && a.band == b.band &&
+         a.orientation == b.orientation;
 }
 
 std::vector<Target> targets_of(const PassPlan& plan, const Geometry& geometry, const Sums& sums) {

@@ -2,6 +2,7 @@
 // Which passes a scene takes: detectors that can share rays share a pass, and so do lanes (variants and bands).
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "pipeline/beams.hpp"
 #include "pipeline/plan.hpp"
@@ -10,6 +11,8 @@
 
 namespace clray {
 namespace {
+
+constexpr std::size_t kAnyNumber = std::numeric_limits<std::size_t>::max();
 
 /// Wavelengths of a picture traced at once: what a hit costs is paid once for all of them. Their sums stay within a
 /// quarter of a GiB, whatever the device, so that the digest is the same on all; the rest goes in further chunks.
@@ -43,7 +46,7 @@ std::vector<Orientation> sun_grid(const Scene& scene, int azimuths, int elevatio
 /// The requests of a scene, detector by detector.
 class Requests {
  public:
-  explicit Requests(const Scene& scene) : scene_(scene), lanes_(lanes_of(scene)), instants_(orientations(scene)) {}
+  explicit Requests(const Scene& scene) : scene_(scene), instants_(orientations(scene)) {}
 
   std::vector<PassRequest> all() {
     for (std::size_t d = 0; d < scene_.detectors.size(); ++d) {
@@ -73,14 +76,21 @@ class Requests {
     return r;
   }
 
-  // Every detector whose rays start at the beam under the scene's own light.
+  // Every detector whose rays start at the beam from the scene's own direction: one request for all that want the
+  // same lanes, and one for those that take a wide band in parts.
   void beam() {
     PassRequest r = request("trace");
     for (std::size_t o = 0; o < scene_.observers.size(); ++o) r.observers.push_back(static_cast<int>(o));
+    PassRequest parts = r;
     for (std::size_t d = 0; d < scene_.detectors.size(); ++d) {
-      if (row(d).beam && !is_grid(d)) r.detectors.push_back(static_cast<int>(d));
+      if (!row(d).beam || is_grid(d)) continue;
+      const bool in_parts = lanes_of(scene_, row(d)).front().share < 1.0;
+      (in_parts ? parts : r).detectors.push_back(static_cast<int>(d));
     }
-    if (!r.detectors.empty()) add(r, lanes_.size());
+    parts.apart = !r.detectors.empty();
+    for (const PassRequest& each : {r, parts}) {
+      if (!each.detectors.empty()) add(each, kAnyNumber);
+    }
   }
 
   void grid(std::size_t d) {
@@ -88,12 +98,12 @@ class Requests {
     PassRequest r = request("sun directions");
     r.detectors = {static_cast<int>(d)};
     r.observers = {0};
-    r.grid = true;
+    r.grid = r.apart = true;
     r.orientations = sun_grid(scene_, static_cast<int>(detector_value(spec, "azimuth_steps")),
                               static_cast<int>(detector_value(spec, "elevation_steps")));
     r.first_orientation = next_orientation_;
     next_orientation_ += r.orientations.size();
-    add(r, lanes_.size());
+    add(r, kAnyNumber);
   }
 
   void picture(std::size_t d) {
@@ -116,14 +126,14 @@ class Requests {
     const bool scatter =
         scene_.trace.max_bounces > 1 || std::any_of(all.detectors.begin(), all.detectors.end(),
                                                     [&](int d) { return row(static_cast<std::size_t>(d)).scatters; });
-    for (std::vector<Lane>& lanes : lane_groups(scene_, lanes_, scatter, most_lanes)) {
+    const std::vector<Lane> lanes = lanes_of(scene_, row(static_cast<std::size_t>(all.detectors.front())));
+    for (std::vector<Lane>& group : lane_groups(scene_, lanes, scatter, most_lanes)) {
       requests_.push_back(all);
-      requests_.back().lanes = std::move(lanes);
+      requests_.back().lanes = std::move(group);
     }
   }
 
   const Scene& scene_;
-  const std::vector<Lane> lanes_;
   const std::vector<Orientation> instants_;
   std::size_t next_orientation_ = 0;
   std::vector<PassRequest> requests_;

@@ -35,6 +35,7 @@ struct PassRequest {
       observers;        ///< indices into Scene::observers: of a beam all it connects to, of pixels the one that looks
   bool pixels = false;  ///< rays start at pixels, else at the beam
   bool grid = false;    ///< the views are a grid of light directions of a detector's own
+  bool apart = false;   ///< it is traced under light of its own, beside others under the scene's
   PictureSize picture;
   std::uint32_t replicates = 16;
 };

@@ -59,4 +59,14 @@ std::vector<double> per_replicate(const PassPlan& plan, Function&& function) {
   return values;
 }
 
+/// The same of a record: its lanes' values (function of lane and replicate), each with its share of the light.
+template <class Function>
+std::vector<double> per_replicate_of(const PassPlan& plan, const LaneRecord& record, Function&& function) {
+  return per_replicate(plan, [&](std::uint32_t r) {
+    double sum = 0.0;
+    for (std::size_t l = record.first; l < record.end; ++l) sum += plan.request.lanes[l].share * function(l, r);
+    return sum;
+  });
+}
+
 }  // namespace clray

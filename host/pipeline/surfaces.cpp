@@ -7,6 +7,7 @@
 #include <map>
 
 #include "clray/error.hpp"
+#include "pipeline/light_parts.hpp"
 #include "pipeline/portable_tables.hpp"
 #include "pipeline/reflectance.hpp"
 #include "scene/spectrum.hpp"
@@ -35,22 +36,48 @@ std::uint32_t add_table(std::vector<double>& tables, const BrdfTable& table) {
 
 }  // namespace
 
-std::vector<Lane> lanes_of(const Scene& scene) {
+namespace {
+
+/// A lane for each variant and band; those of the parts of one band have no band's name, but shares.
+std::vector<Lane> lanes_in(const Scene& scene, const std::vector<Band>& bands, const std::vector<double>& shares) {
   std::vector<Lane> lanes;
-  const std::vector<Band> bands = bands_of(scene);
   for (std::size_t v = 0; v < std::max<std::size_t>(scene.variants.size(), 1); ++v) {
-    for (const Band& band : bands) {
+    for (std::size_t b = 0; b < bands.size(); ++b) {
       Lane lane;
       if (!scene.variants.empty()) {
         lane.variant = scene.variants[v].name;
         lane.variant_index = static_cast<int>(v);
       }
-      lane.band = band;
-      if (bands.size() > 1) lane.band_name = band.name;
+      lane.band = bands[b];
+      if (shares.empty() && bands.size() > 1) lane.band_name = bands[b].name;
+      if (!shares.empty()) lane.share = shares[b];
       lanes.push_back(lane);
     }
   }
   return lanes;
+}
+
+}  // namespace
+
+std::vector<Lane> lanes_of(const Scene& scene) {
+  return lanes_in(scene, bands_of(scene), {});
+}
+
+std::vector<Lane> lanes_of(const Scene& scene, const TableRow& detector) {
+  const std::vector<Band> bands = bands_of(scene, detector);
+  if (!takes_all_light(scene, detector)) return lanes_in(scene, bands, {});
+  const LightParts parts = parts_of(scene, bands.front());
+  return parts.bands.size() > 1 ? lanes_in(scene, parts.bands, parts.shares) : lanes_in(scene, bands, {});
+}
+
+std::vector<LaneRecord> lane_records(const std::vector<Lane>& lanes) {
+  std::vector<LaneRecord> records;
+  for (std::size_t l = 0; l < lanes.size(); ++l) {
+    const bool part = l > 0 && lanes[l].share < 1.0 && lanes[l].variant_index == lanes[l - 1].variant_index;
+    if (!part) records.push_back({l, l});
+    records.back().end = l + 1;
+  }
+  return records;
 }
 
 std::vector<std::vector<Lane>> lane_groups(const Scene& scene, const std::vector<Lane>& lanes, bool scatter,

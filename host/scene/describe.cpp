@@ -10,6 +10,7 @@
 #include "scene/keys.hpp"
 #include "scene/motion.hpp"
 #include "scene/scene_parts.hpp"
+#include "scene/spectrum.hpp"
 #include "scene/tables.hpp"
 #include "shared/portable.h"
 #include "text/columns.hpp"
@@ -153,8 +154,13 @@ std::string describe_scene(const Scene& scene) {
   for (const DetectorSpec& d : scene.detectors) {
     const TableRow& row = table_row("detector", d.kind);
     const std::string options = row_text(row, d.parameters);
-    const std::string what = d.name == d.kind ? d.kind : d.name + ": " + d.kind;
-    lines.add({"detector", what + (options.empty() ? "" : ", " + options)});
+    std::string what = d.name == d.kind ? d.kind : d.name + ": " + d.kind;
+    if (!options.empty()) what += ", " + options;
+    if (takes_all_light(scene, row)) {
+      const Band light = all_light(scene.source);
+      what += fmt::format(", light {} nm ({:.6g} W/m2)", light.name, source_band_W_m2(scene.source, light));
+    }
+    lines.add({"detector", what});
   }
   lines.add({"trace", key_text(scene.trace)});
   std::string text =

@@ -176,12 +176,6 @@ double check_component(const std::string& where, const Scene& scene, const Compo
   return reach.size_m + reach.distance_m;
 }
 
-void check_source(const Source& s) {
-  check_keys("source", s);
-  const std::string fault = source_fault(s);
-  if (!fault.empty()) fail("source.bands", fault);
-}
-
 void check_motion(const Motion& m) {
   check_keys("motion", m);
   check_number("motion.stop_s", m.stop_s, {m.start_s, kInfinity, true, false});
@@ -261,12 +255,16 @@ std::string detector_fault(const DetectorSpec& d) {
   return "";
 }
 
-std::string source_fault(const Source& s) {
+std::string source_fault(const Scene& scene) {
+  const Source& s = scene.source;
   if (s.kind != Source::Kind::sun) return "";
   if (s.spectrum && s.spectrum->wavelength_nm.size() < 2) return "expected a spectrum of at least two wavelengths";
-  Scene scene;
-  scene.source = s;
-  for (const Band& band : bands_of(scene)) {
+  std::vector<Band> bands = s.bands;
+  for (const DetectorSpec& d : scene.detectors) {
+    const std::vector<Band> more = bands_of(scene, table_row("detector", d.kind));
+    if (s.bands.empty()) bands.insert(bands.end(), more.begin(), more.end());
+  }
+  for (const Band& band : bands) {
     if (!(source_band_W_m2(s, band) > 0.0)) {
       return fmt::format("the source has no light in the band {}: its spectrum does not overlap it", band.name);
     }
@@ -305,7 +303,7 @@ void check_scene(const Scene& scene) {
       check_material(where, m);
     }
   }
-  check_source(scene.source);
+  check_keys("source", scene.source);
   for (std::size_t i = 0; i < scene.observers.size(); ++i) {
     check_keys(fmt::format("observers[{}]", i), scene.observers[i]);
   }
@@ -315,6 +313,8 @@ void check_scene(const Scene& scene) {
     const std::string fault = detector_fault(scene.detectors[i]);
     if (!fault.empty()) fail(where, fault);
   }
+  const std::string dark = source_fault(scene);
+  if (!dark.empty()) fail("source.bands", dark);
   if (scene.motion) check_motion(*scene.motion);
   if (scene.station) check_keys("station", *scene.station);
   check_ranging(scene);

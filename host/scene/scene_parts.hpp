@@ -32,8 +32,8 @@ std::string distance_fault(const Component& component);
 /// What is wrong with a detector's parameters taken together, or "".
 std::string detector_fault(const DetectorSpec& detector);
 
-/// What is wrong with a source (bands that it has no light in), or "".
-std::string source_fault(const Source& source);
+/// What is wrong with a source under the scene's detectors (bands that it has no light in), or "".
+std::string source_fault(const Scene& scene);
 
 /// Throws Error(input) where the station's range is not known throughout the motion (at time 0 without one), where an
 /// observer at the source has another range than the station there, or where the shots of a session are too many.

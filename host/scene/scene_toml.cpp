@@ -254,11 +254,11 @@ Scene read_scene_file(const std::string& path, const SceneOptions& options) {
   read_materials(root, &scene);
   read_components(root, options.length_unit_m > 0.0 ? options.length_unit_m : unit_m, &scene);
   read_variants(root, &scene);
+  read_detectors(root, &scene);
   read_source(root, &scene);
   read_observers(root, &scene);
   read_motion(root, &scene);
   read_station(root, &scene);
-  read_detectors(root, &scene);
   read_trace(root, &scene);
   return scene;
 }

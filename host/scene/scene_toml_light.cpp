@@ -12,7 +12,7 @@ void read_source(TomlTable& root, Scene* scene) {
   std::optional<TomlTable> t = root.table("source");
   if (!t) return;
   read_keys(*t, &scene->source);
-  const std::string fault = source_fault(scene->source);
+  const std::string fault = source_fault(*scene);
   if (!fault.empty()) t->fail(scene->source.bands.empty() ? "spectrum" : "bands", fault);
 }
 

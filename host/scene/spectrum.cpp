@@ -216,4 +216,26 @@ std::vector<Band> bands_of(const Scene& scene) {
   return {make_band(400.0, 700.0)};
 }
 
+std::vector<Band> bands_of(const Scene& scene, const TableRow& detector) {
+  return takes_all_light(scene, detector) ? std::vector<Band>{all_light(scene.source)} : bands_of(scene);
+}
+
+bool takes_all_light(const Scene& scene, const TableRow& detector) {
+  return detector.whole && scene.source.kind == Source::Kind::sun && scene.source.bands.empty();
+}
+
+Band all_light(const Source& source) {
+  double low = 200.0, high = 10000.0;
+  if (is_table(source)) {
+    low = source.spectrum->wavelength_nm.front();
+    high = source.spectrum->wavelength_nm.back();
+  } else if (source.blackbody_K > 0.0) {
+    low *= kSun_K / source.blackbody_K;
+    high *= kSun_K / source.blackbody_K;
+  }
+  Band band = make_band(low, high);
+  band.name = fmt::format("{:.6g}-{:.6g}", low, high);
+  return band;
+}
+
 }  // namespace clray

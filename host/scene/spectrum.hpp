@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "clray/scene.hpp"
+#include "scene/tables.hpp"
 
 namespace clray {
 
@@ -47,6 +48,16 @@ double source_spectral_W_m2_nm(const Source& source, double wavelength_nm);
 
 /// The bands of the source: a laser's line as one band of no width, a sun's own bands, or 400-700 nm.
 std::vector<Band> bands_of(const Scene& scene);
+
+/// The same for a detector, a row of detector.def: without bands one that measures the whole light has all_light().
+std::vector<Band> bands_of(const Scene& scene, const TableRow& detector);
+
+/// Whether that is so: there are no bands, and this detector measures all of a sun's light.
+bool takes_all_light(const Scene& scene, const TableRow& detector);
+
+/// Where a sun shines: from end to end of its table; of a black body 200-10000 nm at 5772 K (0.9978 of its light),
+/// and the like share at any other temperature.
+Band all_light(const Source& source);
 
 /// A band named by its range, "400-500", or "532" if it has no width.
 Band make_band(double low_nm, double high_nm);

@@ -80,6 +80,8 @@ struct SpectrometerResult {
 /// Radiation force and torque per unit irradiance, net of all bounces.
 struct PressureResult {
   ResultKey key;
+  Band band;                                               ///< of the light that pushes
+  double source_W_m2 = 0.0;                                ///< of the source inside the band
   Vec3 sun{0.0, 0.0, 1.0};                                 ///< toward the source, body frame
   VectorEstimate coefficient_m2;                           ///< C = F c / E
   VectorEstimate torque_coefficient_m3;                    ///< about the reference point

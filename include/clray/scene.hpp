@@ -114,7 +114,7 @@ struct Source {
   Kind kind = Kind::laser;
   Vec3 direction{0.0, 0.0, 1.0};     ///< unit vector toward the source
   double wavelength_nm = 532.0;      ///< of a laser
-  std::vector<Band> bands;           ///< empty: the laser line, or for a sun one band 400-700 nm
+  std::vector<Band> bands;           ///< empty: the laser line; of a sun one of 400-700 nm, for pressure all its light
   std::optional<Spectrum> spectrum;  ///< W/m²/nm; a sun without one is Planck at 5772 K
   double blackbody_K = 0.0;          ///< > 0: Planck at this temperature, scaled to irradiance_W_m2
   double irradiance_W_m2 = 1361.0;   ///< of a sun or blackbody, all wavelengths

@@ -3,6 +3,7 @@
 #include "pipeline/detector/books.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "pipeline/detector/room.hpp"
 #include "pipeline/detector/rooms.hpp"
@@ -11,11 +12,11 @@
 namespace clray {
 namespace {
 
-EnergyBooks books_of(const RoomResults& x, std::size_t l) {
+EnergyBooks books_of(const RoomResults& x, const LaneRecord& record) {
   EnergyBooks e;
-  e.key.variant = x.plan.request.lanes[l].variant;
-  e.key.band = x.plan.request.lanes[l].band_name;
-  if (x.plan.request.grid) {
+  e.key.variant = x.plan.request.lanes[record.first].variant;
+  e.key.band = x.plan.request.lanes[record.first].band_name;
+  if (x.plan.request.apart) {
     const DetectorSpec& owner = x.scene.detectors[static_cast<std::size_t>(x.plan.request.detectors.front())];
     e.key.detector = owner.name.empty() ? owner.kind : owner.name;
   }
@@ -25,7 +26,7 @@ EnergyBooks books_of(const RoomResults& x, std::size_t l) {
   for (int which = 0; which < CLRAY_BOOKS; ++which) {
     std::vector<double> mean(x.plan.request.replicates, 0.0);
     for (std::size_t v = 0; v < views; ++v) {
-      const std::vector<double> one = book(x.plan, x.read, v, l, which);
+      const std::vector<double> one = book(x.plan, x.read, v, record, which);
       for (std::size_t r = 0; r < mean.size(); ++r) mean[r] += one[r];
     }
     for (double& m : mean) m /= static_cast<double>(views);
@@ -36,13 +37,21 @@ EnergyBooks books_of(const RoomResults& x, std::size_t l) {
 
 void books_results(const RoomResults& x) {
   if (x.plan.request.pixels) return;  // their rays are not the light's
-  for (std::size_t l = 0; l < x.plan.layout.shape.lanes; ++l) {
-    EnergyBooks e = books_of(x, l);
+  for (const LaneRecord& record : lane_records(x.plan.request.lanes)) {
+    EnergyBooks e = books_of(x, record);
     if (e.incident_m2.value > 0.0) {
       double& fraction = x.out.diagnostics.truncated_energy_fraction;
       fraction = std::max(fraction, e.truncated_m2.value / e.incident_m2.value);
     }
-    x.out.energy.push_back(std::move(e));
+    EnergyBooks* known = x.known(x.out.energy, e.key, record);
+    if (known == nullptr) {
+      x.out.energy.push_back(std::move(e));
+      continue;
+    }
+    const std::array<Estimate EnergyBooks::*, CLRAY_BOOKS> entries{
+        {&EnergyBooks::incident_m2, &EnergyBooks::reflected_m2, &EnergyBooks::absorbed_m2, &EnergyBooks::roulette_m2,
+         &EnergyBooks::truncated_m2, &EnergyBooks::unconnected_specular_m2}};
+    for (const auto entry : entries) known->*entry = sum_of_parts(known->*entry, e.*entry);
   }
 }
 

@@ -4,6 +4,7 @@
 // function has a default; a detector that needs none of them has no file here.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,6 +14,9 @@
 #include "pipeline/sum_reader.hpp"
 
 namespace clray {
+
+/// Whether two keys name one record.
+bool same_record(const ResultKey& a, const ResultKey& b);
 
 /// What a room is asked with: the scene's words for the detector, and the plan as far as it is made.
 struct RoomContext {
@@ -35,6 +39,17 @@ struct RoomResults {
   ResultKey key(std::size_t v, std::size_t l, std::size_t c) const;
   /// The same without an observer.
   ResultKey key(std::size_t v, std::size_t l) const;
+  /// The band that this detector has of a lane: where surfaces know no wavelength, lanes stand for those of several.
+  Band band(std::size_t l) const;
+  /// Of records so far the one of this key that `record`, part of a band, adds to; null where it is the first, or
+  /// whole.
+  template <class Record>
+  Record* known(std::vector<Record>& records, const ResultKey& key, const LaneRecord& record) const {
+    if (!(plan.request.lanes[record.first].share < 1.0)) return nullptr;
+    const auto found =
+        std::find_if(records.begin(), records.end(), [&](const Record& r) { return same_record(r.key, key); });
+    return found == records.end() ? nullptr : &*found;
+  }
 };
 
 struct DetectorRoom {

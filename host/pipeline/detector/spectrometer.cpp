@@ -29,7 +29,7 @@ void spectrometer_record(const RoomResults& x, const ephemeris::RangeModel* rang
   const Orientation& instant = x.plan.request.orientations[v];
   SpectrometerResult s;
   s.key = x.key(v, l, c);
-  s.band = x.plan.request.lanes[l].band;
+  s.band = x.band(l);
   s.intensity_m2_per_sr = estimate_mean(intensities(x.plan, x.read, v, l, c));
   s.source_W_m2 = source_band_W_m2(x.scene.source, s.band);
   s.magnitude_AB = s.magnitude_standard_error = kNan;
