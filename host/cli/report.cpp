@@ -205,6 +205,27 @@ std::string forces(const Result& result) {
   return "\n" + table.text("  ");
 }
 
+/// "absorbed", or "absorbed 2" where the sum has several numbers.
+std::string number_name(const TableResult& sum, std::size_t k) {
+  return sum.values.size() > 1 ? sum.name + " " + std::to_string(k) : sum.name;
+}
+
+/// Sums that are results by themselves, in the units of their detectors' rows.
+std::string sums(const Result& result) {
+  if (result.table.empty()) return "";
+  Columns table;
+  table.add({"detector", "sum", "value"});
+  std::size_t count = 0;
+  for (const TableResult& sum : result.table) {
+    for (std::size_t k = 0; k < sum.values.size(); ++k) {
+      if (++count > kMostRows) continue;
+      table.add({k == 0 ? member(sum.key, result.orientations.size()) : "", number_name(sum, k),
+                 amount(sum.values[k], 1.0, sum.unit.c_str()) + "   (95 %: ±" + percent_error(sum.values[k]) + ")"});
+    }
+  }
+  return "\n" + table.text("  ") + more_rows(count);
+}
+
 std::string file_list(const std::vector<std::string>& files) {
   std::string list;
   for (std::size_t i = 0; i < std::min<std::size_t>(files.size(), 12); ++i) list += (i ? ", " : "") + files[i];
@@ -240,6 +261,12 @@ std::string totals_line(const Result& result) {
     }
     text += " m²\n";
   }
+  for (const TableResult& sum : result.table) {
+    for (std::size_t k = 0; k < sum.values.size(); ++k) {
+      text += member(sum.key, result.orientations.size()) + ": " + number_name(sum, k) + " = " +
+              amount(sum.values[k], 1.0, sum.unit.c_str()) + "\n";
+    }
+  }
   return text;
 }
 
@@ -268,7 +295,8 @@ std::string closing_table(const Result& result, const Scene& scene, const std::s
                                                   : "n/a: " + reference->file + " has none of these totals"});
   }
   table.add({"digest", fmt::format("{:016x}", result.digest)});
-  const std::string more = (result.delay.size() > 1 ? many_pulses(result) : "") + bands(result) + forces(result);
+  const std::string more =
+      (result.delay.size() > 1 ? many_pulses(result) : "") + bands(result) + forces(result) + sums(result);
   const std::string list = folder + "/: " + file_list(files);
   if (more.empty()) table.add({"files", list});
   return table.text("  ") + (more.empty() ? "" : more + "\n  files  " + list + "\n");

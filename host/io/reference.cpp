@@ -48,7 +48,10 @@ Reference from_summary(const std::string& file, const std::string& text) {
     if (entry.contains("orientation") && entry["orientation"].is_number_unsigned()) {
       key.orientation = entry["orientation"].get<std::size_t>();
     }
-    reference.totals[io::total_path(key)] = entry["value"].get<double>();
+    io::Total total{key, entry["value"].get<double>(), 0.0, "", text_of(entry, "sum")};
+    if (entry.contains("number") && entry["number"].is_number_unsigned())
+      total.number = entry["number"].get<std::uint64_t>();
+    reference.totals[io::total_path(total)] = total.value;
   }
   if (reference.totals.empty()) fail(file, 0, "holds no totals to compare with");
   return reference;
@@ -98,7 +101,7 @@ Reference from_table(const std::string& file, const std::string& text) {
 }
 
 double wanted_total(const Total& total, bool first, const Reference& reference) {
-  auto found = reference.totals.find(io::total_path(total.key));
+  auto found = reference.totals.find(io::total_path(total));
   if (found == reference.totals.end() && first) found = reference.totals.find(kFirst);
   return found == reference.totals.end() ? std::nan("") : found->second;
 }
@@ -131,8 +134,12 @@ double relative_true_error(const Result& result, const Reference& reference) {
 
 namespace io {
 
-std::string total_path(const ResultKey& key) {
-  return key.detector + "/" + key.observer + "/" + key.variant + "/" + key.band + "/" + std::to_string(key.orientation);
+std::string total_path(const Total& total) {
+  const ResultKey& key = total.key;
+  std::string path =
+      key.detector + "/" + key.observer + "/" + key.variant + "/" + key.band + "/" + std::to_string(key.orientation);
+  if (!total.sum.empty()) path += "/" + total.sum + "/" + std::to_string(total.number);
+  return path;
 }
 
 std::vector<Total> totals(const Result& result) {
@@ -152,7 +159,8 @@ std::vector<Total> totals(const Result& result) {
     all.push_back({pressure.key, length, error, "m2"});
   }
   for (const auto& sum : result.table) {
-    for (const Estimate& e : sum.values) all.push_back({sum.key, e.value, e.standard_error, sum.unit.c_str()});
+    for (std::size_t k = 0; k < sum.values.size(); ++k)
+      all.push_back({sum.key, sum.values[k].value, sum.values[k].standard_error, sum.unit, sum.name, k});
   }
   return all;
 }

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // summary.json: what ran, on what, how long, what was found with which error. NaN and infinities become null. Results
 // are keyed by detector, then observer and variant where there are several; units are in the names.
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -129,11 +131,17 @@ Json& place_of(Json& detectors, const ResultKey& key) {
   return *place;
 }
 
+/// Puts what a record says beside what its place holds already.
+void put(Json& place, Json entry) {
+  place.is_null() ? void(place = std::move(entry)) : place.update(entry);
+}
+
 /// Single records stand for themselves; those of several orientations form the list "orientations".
 template <class Records, class Entry>
 void add_entries(Json& detectors, const Writer& writer, const Records& records, Entry entry) {
   for (const auto& group : groups(records)) {
     Json& place = place_of(detectors, group.front()->key);
+    std::map<std::string, std::size_t> listed;  // records so far, by band
     std::set<std::size_t> orientations;
     for (const auto* record : group) orientations.insert(record->key.orientation);
     const bool several =
@@ -143,13 +151,11 @@ void add_entries(Json& detectors, const Writer& writer, const Records& records, 
       if (several) {
         Json& list = record->key.band.empty() ? place["orientations"]
                                               : place["bands"][one_line(record->key.band)]["orientations"];
-        Json numbered{{"orientation", record->key.orientation}, {"time_s", time_of(writer.result, record->key)}};
-        numbered.update(made);
-        list.push_back(std::move(numbered));
-      } else if (!record->key.band.empty()) {
-        place["bands"][one_line(record->key.band)] = std::move(made);
+        Json& numbered = list[listed[record->key.band]++];
+        put(numbered, {{"orientation", record->key.orientation}, {"time_s", time_of(writer.result, record->key)}});
+        put(numbered, std::move(made));
       } else {
-        place.is_null() ? void(place = std::move(made)) : place.update(made);
+        put(record->key.band.empty() ? place : place["bands"][one_line(record->key.band)], std::move(made));
       }
     }
   }
@@ -162,13 +168,24 @@ Json sum_entry(const TableResult& sum) {
   return {{sum.name, {{"unit", sum.unit}, {"values", values}}}};
 }
 
+/// The records of each sum, in the order in which they first occur.
+std::vector<std::vector<TableResult>> by_sum(const std::vector<TableResult>& records) {
+  std::vector<std::vector<TableResult>> sums;
+  for (const TableResult& record : records) {
+    const auto same = [&](const auto& sum) { return sum.front().name == record.name; };
+    const auto found = std::find_if(sums.begin(), sums.end(), same);
+    (found == sums.end() ? sums.emplace_back() : *found).push_back(record);
+  }
+  return sums;
+}
+
 Json detectors_of(const Writer& writer) {
   Json detectors = Json::object();
   add_entries(detectors, writer, writer.result.delay, delay_entry);
   add_entries(detectors, writer, writer.result.spectrometer, spectrometer_entry);
   add_entries(detectors, writer, writer.result.pressure,
               [&](const PressureResult& record) { return pressure_entry(record, writer.scene); });
-  add_entries(detectors, writer, writer.result.table, sum_entry);
+  for (const auto& sum : by_sum(writer.result.table)) add_entries(detectors, writer, sum, sum_entry);
   add_entries(detectors, writer, writer.result.image, [&](const ImageResult& image) {
     Json entry = image_entry(image);
     if (writer.kind_of(image.key) == "rgb") {
@@ -197,6 +214,9 @@ Json totals_of(const Writer& writer) {
                     {"value", total.value},
                     {"standard_error", total.standard_error},
                     {"unit", total.unit}});
+    if (total.sum.empty()) continue;
+    list.back()["sum"] = total.sum;
+    list.back()["number"] = total.number;
   }
   return list;
 }

@@ -91,15 +91,16 @@ TimeUnit readable_time_unit(double seconds);
 /// Time of a record's orientation, s; 0 where unknown.
 double time_of(const Result& result, const ResultKey& key);
 
-/// "detector/observer/variant/band/orientation", the key of Reference::totals.
-std::string total_path(const ResultKey& key);
-
 /// One total of a result, as the summary lists them.
 struct Total {
   ResultKey key;
   double value = 0.0, standard_error = 0.0;
-  const char* unit = "";
+  std::string unit;
+  std::string sum = {};      ///< of a sum that is a result by itself: its name
+  std::uint64_t number = 0;  ///< which of its numbers
 };
+/// "detector/observer/variant/band/orientation", or "…/sum/number": the key of Reference::totals.
+std::string total_path(const Total& total);
 /// All totals: of delay, then spectrometer, then |C| of pressure, then every number of sums that are results by
 /// themselves.
 std::vector<Total> totals(const Result& result);

@@ -210,10 +210,11 @@ std::vector<std::string> write_result(const Result& result, const Scene& scene, 
 /// that is not a clray result stands there or the place cannot be written. Leaves nothing behind.
 void check_output(const std::string& folder);
 
-/// Totals to measure the true error against, by "detector/observer/variant/band/orientation".
+/// Totals to measure the true error against, by "detector/observer/variant/band/orientation"; behind it "/sum/number"
+/// for sums that are results by themselves. In the units of the totals in summary.json.
 struct Reference {
   std::string file;
-  std::map<std::string, double> totals;  ///< m²/sr, or m² for |C| of pressure
+  std::map<std::string, double> totals;
 };
 
 /// Reads a summary.json or a delay.csv. Throws Error(input).

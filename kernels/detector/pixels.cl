@@ -4,10 +4,12 @@
 #ifndef CLRAY_DETECTOR_PIXELS_CL
 #define CLRAY_DETECTOR_PIXELS_CL
 
-static void detector_pixels_hit(const Buffers* g, Tally* tally, u32 n, u32 bounce, const Surface* surface) {
+static void detector_pixels_hit(const Buffers* g, Tally* tally, u32 n, u32 bounce, const Surface* surface,
+                                const Path* path) {
   (void)g;
   (void)n;
   (void)surface;
+  (void)path;
   if (bounce == 0u) ++tally->kept[CLRAY_KEPT_pixels_covered];
 }
 

@@ -25,7 +25,7 @@ static void trace_path(const Buffers *g, Sampler *sampler, Tally *tally) {
     }
     if (bounce == CLRAY_MAX_BOUNCES) break;
     path.length += piece_length(g, tally, bounce, before, surface.point);
-    record_hit(g, tally, bounce, &surface);
+    record_hit(g, tally, bounce, &surface, &path);
     stage_shade(g, tally, bounce, &surface, &path);
     if (!CLRAY_SCATTER) break;
     Scattering scattering = stage_scatter(g, sampler, bounce, &surface, &path, &ray);

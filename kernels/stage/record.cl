@@ -2,7 +2,7 @@
 // Stage 6, record: every detector of the scene looks at a moment of the path and adds to its sums, as integers. A
 // detector is one file, detector/<id>.cl, with a function for each hook that its row in detector.def names; this file
 // gives them what they add with, and calls them. Hooks that no detector of the scene has call nothing.
-//   hit      (g, tally, n, bounce, surface)              a ray meets a surface
+//   hit      (g, tally, n, bounce, surface, path)        light that a path carries meets a surface
 //   connect  (g, tally, n, c, weights, length)           light toward connection c, on a path of `length` (m, relative
 //                                                        to the reference point)
 //   scatter  (g, tally, n, bounce, surface, path, s)     light goes on from a surface, or ends there
@@ -49,9 +49,9 @@ static void hand_over(const Buffers *g, u64 at, const i64 *own, u32 count) {
 
 #include "generated/detector_all.inc"
 
-static void record_hit(const Buffers *g, Tally *tally, u32 bounce, const Surface *surface) {
+static void record_hit(const Buffers *g, Tally *tally, u32 bounce, const Surface *surface, const Path *path) {
 #define CLRAY_DETECTOR_CASE(id) \
-  for (u32 n = 0; n < CLRAY_COUNT_##id; ++n) detector_##id##_hit(g, tally, n, bounce, surface);
+  for (u32 n = 0; n < CLRAY_COUNT_##id; ++n) detector_##id##_hit(g, tally, n, bounce, surface, path);
   CLRAY_HOOK_hit(CLRAY_DETECTOR_CASE)
 #undef CLRAY_DETECTOR_CASE
 }

@@ -286,6 +286,34 @@ TEST_CASE("a reference turns claimed into true error") {
   CHECK(load_reference(scratch / "hand.csv").totals.at("") == 3.0);
 }
 
+TEST_CASE("every number of a sum is a total of its own, and sums of one detector stand side by side") {
+  Scratch scratch;
+  Result result = io_test::result();
+  result.orientations.push_back({});
+  for (std::size_t orientation = 0; orientation < 2; ++orientation) {
+    for (const char* sum : {"lit", "absorbed"}) {
+      TableResult table{{"delay", "", "", "", orientation}, sum, "m2", {}};
+      for (const double value : {1.0, 2.0}) table.values.push_back({value + static_cast<double>(orientation), 0.1});
+      result.table.push_back(table);
+    }
+  }
+  write_result(result, io_test::scene(), scratch / "out", no_plots());
+  const auto summary = nlohmann::json::parse(slurp(scratch / "out/summary.json"));
+  const auto& listed = summary["detectors"]["delay"]["orientations"];
+  REQUIRE(listed.size() == 2);
+  CHECK(listed[1]["orientation"] == 1);
+  for (const char* sum : {"lit", "absorbed"}) CHECK(listed[1][sum]["values"][1]["value"].get<double>() == 3.0);
+  REQUIRE(summary["totals"].size() == 8);
+  CHECK(summary["totals"][7]["sum"] == "absorbed");
+  CHECK(summary["totals"][7]["number"] == 1);
+  const Reference same = load_reference(scratch / "out/summary.json");
+  CHECK(same.totals.size() == 8);
+  CHECK(same.totals.at("delay////1/lit/1") == 3.0);
+  CHECK(relative_true_error(result, same) == 0.0);
+  result.table[2].values[1].value = 3.75;  // was 3: off by a quarter
+  CHECK(relative_true_error(result, same) == 0.25);
+}
+
 TEST_CASE("references that are none are refused with their place") {
   Scratch scratch;
   spit(scratch / "empty.csv", "");
