@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "clray/constants.hpp"
 #include "clray/device.hpp"
 #include "clray/error.hpp"
 #include "clray/result.hpp"
@@ -14,7 +15,6 @@
 
 namespace {
 
-constexpr double kLightSpeed = 299792458.0;  // m/s
 constexpr double kRho = 0.3, kRadius_m = 0.5;
 
 clray::Scene sphere() {
@@ -42,10 +42,11 @@ clray::Scene sphere() {
 
 /// Integral of A(t) over a bin, m²/sr.
 double exact_bin(double start_s, double width_s) {
-  const double first = -2.0 * kRadius_m / kLightSpeed;
+  const double first = -2.0 * kRadius_m / clray::constants::kLightSpeed_m_s;
   const double from = std::fmin(std::fmax(start_s, first), 0.0);
   const double to = std::fmin(std::fmax(start_s + width_s, first), 0.0);
-  return kRho / (12.0 * kRadius_m) * std::pow(kLightSpeed, 3) * (to * to * to - from * from * from);
+  return kRho / (12.0 * kRadius_m) * std::pow(clray::constants::kLightSpeed_m_s, 3) *
+         (to * to * to - from * from * from);
 }
 
 int run(const char* device_choice, const char* folder) {

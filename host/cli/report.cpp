@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "clray/constants.hpp"
 #include "text/columns.hpp"
 
 namespace clray::cli {
@@ -18,8 +19,6 @@ namespace {
 
 using text::characters;
 using text::Columns;
-
-constexpr double kPi = 3.14159265358979323846;
 
 std::string with_unit(const std::string& number, const char* unit) {
   return number == "n/a" ? number : number + " " + unit;
@@ -132,7 +131,7 @@ std::string more_rows(std::size_t count) {
 void one_pulse(Columns& table, const DelayResult& delay) {
   const auto& a = delay.intensity_m2_per_sr;
   table.add({"A", amount(a, 1.0, "m²/sr") + "   (95 %: ±" + percent_error(a) + ")"});
-  table.add({"cross-section", amount(a, 4.0 * kPi, "m²")});
+  table.add({"cross-section", amount(a, 4.0 * constants::kPi, "m²")});
   table.add({"mean delay", amount(delay.mean_delay_s, 1e9, "ns")});
   table.add({"rms width", amount(delay.rms_width_s, 1e9, "ns")});
 }
@@ -146,7 +145,7 @@ std::string many_pulses(const Result& result) {
   for (std::size_t i = 0; i < std::min(result.delay.size(), kMostRows); ++i) {
     const auto& delay = result.delay[i];
     table.add({member(delay.key, result.orientations.size()), number(delay.intensity_m2_per_sr, 1.0),
-               number(delay.intensity_m2_per_sr, 4.0 * kPi), number(delay.mean_delay_s, 1e9),
+               number(delay.intensity_m2_per_sr, 4.0 * constants::kPi), number(delay.mean_delay_s, 1e9),
                number(delay.rms_width_s, 1e9)});
   }
   return "\n" + table.text("  ") + more_rows(result.delay.size());
@@ -165,7 +164,7 @@ std::string bands(const Result& result) {
     table.add({member(key, result.orientations.size()), fmt::format("{:g}-{:g}", s.band.low_nm, s.band.high_nm),
                format_with_error(s.intensity_m2_per_sr.value, s.intensity_m2_per_sr.standard_error),
                received ? format_with_error(s.received_W_m2, s.received_W_m2_standard_error) : "n/a (no range)",
-               magnitude, fmt::format("{:.4g}", s.phase_angle_rad * 180.0 / kPi)});
+               magnitude, fmt::format("{:.4g}", s.phase_angle_rad * 180.0 / constants::kPi)});
   }
   return "\n" + table.text("  ") + more_rows(result.spectrometer.size());
 }
@@ -186,7 +185,7 @@ std::string force_span(const Result& result) {
 }
 
 std::string forces(const Result& result) {
-  constexpr double kSolarPressure = 1361.0 / 299792458.0;  // N/m²
+  constexpr double kSolarPressure = constants::kSolarConstant_W_m2 / constants::kLightSpeed_m_s;  // N/m²
   if (result.pressure.empty()) return "";
   if (result.pressure.size() > kMostRows / 3) return force_span(result);
   Columns table;

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "clray/constants.hpp"
 #include "clray/error.hpp"
 #include "ephemeris/record_text.hpp"
 
@@ -18,7 +19,6 @@ namespace {
 constexpr std::size_t kPoints = 10;  // of a polynomial of the 9th order
 constexpr std::size_t kNoLimit = std::string::npos;
 constexpr double kStepTolerance_s = 1e-6;
-constexpr double kLightSpeed = 299792458.0;  // m/s
 
 void read_h1(RecordReader& in, Prediction* p) {
   in.expect_fields(3, kNoLimit);
@@ -181,7 +181,7 @@ double distance_at(const Prediction& p, const Vec3& station_m, double time_s) {
   double distance = glm::length(position_at(p, time_s) - station_m);
   // Each round gains a factor v/c < 3e-5: four leave nothing of the light time's error.
   for (int round = 0; round < 4; ++round) {
-    const double next = glm::length(position_at(p, time_s + distance / kLightSpeed) - station_m);
+    const double next = glm::length(position_at(p, time_s + distance / constants::kLightSpeed_m_s) - station_m);
     if (next == distance) break;
     distance = next;
   }

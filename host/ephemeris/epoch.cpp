@@ -46,21 +46,21 @@ double seconds_between(const Instant& a, const Instant& b) {
 }
 
 Epoch epoch_of(const Epoch& zero, const Instant& time) {
-  std::int64_t days = time.s / 86400;
-  if (time.s % 86400 < 0) --days;
-  return normalised({zero.mjd + days, zero.ps + (time.s - days * 86400) * kPicosecondsPerSecond + time.ps});
+  std::int64_t days = time.s / kSecondsPerDay;
+  if (time.s % kSecondsPerDay < 0) --days;
+  return normalised({zero.mjd + days, zero.ps + (time.s - days * kSecondsPerDay) * kPicosecondsPerSecond + time.ps});
 }
 
 Epoch epoch_of(std::int64_t mjd, double seconds) {
   const double whole = std::floor(seconds);
-  const double days = std::floor(whole / 86400.0);
-  const auto second_of_day = static_cast<std::int64_t>(whole - days * 86400.0);
+  const double days = std::floor(whole / kSecondsPerDay);
+  const auto second_of_day = static_cast<std::int64_t>(whole - days * kSecondsPerDay);
   const auto ps = static_cast<std::int64_t>(std::llround((seconds - whole) * 1e12));
   return normalised({mjd + static_cast<std::int64_t>(days), second_of_day * kPicosecondsPerSecond + ps});
 }
 
 double seconds_between(const Epoch& a, const Epoch& b) {
-  return static_cast<double>(b.mjd - a.mjd) * 86400.0 + static_cast<double>(b.ps - a.ps) * 1e-12;
+  return static_cast<double>(b.mjd - a.mjd) * kSecondsPerDay + static_cast<double>(b.ps - a.ps) * 1e-12;
 }
 
 Date date_of(const Epoch& epoch) {
@@ -100,7 +100,7 @@ Epoch production_epoch() {
     const long long value = std::strtoll(fixed, &end, 10);
     if (end != fixed && *end == '\0' && value >= 0 && value < 250000000000) seconds = value;
   }
-  return {kUnixEpochMjd + seconds / 86400, seconds % 86400 * kPicosecondsPerSecond};
+  return {kUnixEpochMjd + seconds / kSecondsPerDay, seconds % kSecondsPerDay * kPicosecondsPerSecond};
 }
 
 }  // namespace clray::ephemeris

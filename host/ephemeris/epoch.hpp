@@ -10,7 +10,8 @@
 namespace clray::ephemeris {
 
 inline constexpr std::int64_t kPicosecondsPerSecond = 1000000000000;
-inline constexpr std::int64_t kPicosecondsPerDay = 86400 * kPicosecondsPerSecond;
+inline constexpr std::int64_t kSecondsPerDay = 86400;
+inline constexpr std::int64_t kPicosecondsPerDay = kSecondsPerDay * kPicosecondsPerSecond;
 
 /// An instant; ps in [0, one day).
 struct Epoch {

@@ -8,14 +8,14 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "clray/constants.hpp"
 #include "clray/error.hpp"
 
 namespace clray::ephemeris {
 
 namespace {
 
-constexpr std::size_t kTablePoints = 4;  // a cubic through the four nearest points; all of them where there are fewer
-constexpr double kLightSpeed = 299792458.0;
+constexpr std::size_t kTablePoints = 4;   // a cubic through the four nearest points; all of them where there are fewer
 constexpr double kFirstMjd = -2400000.5;  // the Julian Date 0: a time 0 of Julian seconds
 
 [[noreturn]] void refuse(const std::string& key, const std::string& what) {
@@ -50,7 +50,8 @@ RangeModel::RangeModel(const Station& station)
     refuse("station.start_mjd", fmt::format("is {}; expected a Modified Julian Date", station.start_mjd));
   }
   const double day = std::floor(station.start_mjd);
-  if (station.start_mjd != 0.0) zero_ = epoch_of(static_cast<std::int64_t>(day), (station.start_mjd - day) * 86400.0);
+  if (station.start_mjd != 0.0)
+    zero_ = epoch_of(static_cast<std::int64_t>(day), (station.start_mjd - day) * kSecondsPerDay);
   if (!station.cpf_file.empty()) {
     prediction_ = std::make_unique<Prediction>(read_cpf(station.cpf_file));
     const double radius = glm::length(position_m_);
@@ -112,7 +113,7 @@ void RangeModel::check_covers(double start_s, double stop_s) const {
   if (prediction_) {
     const double last = prediction_->time_s.back();
     const double end = std::clamp(since_first_s(stop), 0.0, last);
-    const double flight = glm::length(position_at(*prediction_, end) - position_m_) / kLightSpeed;
+    const double flight = glm::length(position_at(*prediction_, end) - position_m_) / constants::kLightSpeed_m_s;
     if (since_first_s(start) >= 0.0 && since_first_s(stop) + flight * (1.0 + 1e-4) <= last) return;
     const Epoch back = epoch_of(prediction_->first.mjd, static_cast<double>(prediction_->first.ps) * 1e-12 + last);
     refuse(prediction_->path,
@@ -134,7 +135,7 @@ double RangeModel::elevation_rad(const Instant& time) const {
   constexpr double kA_m = 6378137.0, kB_m = 6356752.314245;
   const Vec3 up = glm::normalize(position_m_ / Vec3(kA_m * kA_m, kA_m * kA_m, kB_m * kB_m));
   const double since = since_first_s(time);
-  const double flight = distance_at(*prediction_, position_m_, since) / kLightSpeed;
+  const double flight = distance_at(*prediction_, position_m_, since) / constants::kLightSpeed_m_s;
   const Vec3 sight = position_at(*prediction_, since + flight) - position_m_;
   return std::asin(std::clamp(glm::dot(glm::normalize(sight), up), -1.0, 1.0));
 }

@@ -5,13 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "clray/constants.hpp"
 #include "scene/spectrum.hpp"
 
 namespace clray::io {
 
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 double lobe(double x, double centre, double left, double right) {
   const double t = (x - centre) / (x < centre ? left : right);
@@ -73,12 +72,12 @@ std::vector<Vec3> rgb_weights(const ImageResult& image, const Source& source) {
   for (std::size_t b = 0; b < image.bands.size(); ++b) {
     const double power = b < image.band_source_W_m2.size() ? image.band_source_W_m2[b] : 0.0;
     weights.push_back(power * band_colour(image.bands[b], source));
-    white += weights.back().y / kPi;
+    white += weights.back().y / constants::kPi;
   }
   // Below a millionth of the eye's peak a band is not visible but the fit's tail.
   double power = 0.0;
   for (const double p : image.band_source_W_m2) power += p;
-  const bool visible = white * kPi > 1e-6 * power && white > 0.0;
+  const bool visible = white * constants::kPi > 1e-6 * power && white > 0.0;
   for (auto& weight : weights) weight = visible ? xyz_to_linear_srgb(weight / white) : Vec3{0.0};
   return weights;
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "clray/constants.hpp"
 #include "io/fits_file.hpp"
 #include "io/writer.hpp"
 #include "text/text.hpp"
@@ -13,8 +14,6 @@ namespace clray::io {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kLightSpeed = 299792458.0;  // m/s
 using Group = std::vector<const DelayResult*>;
 
 double at(const std::vector<double>& values, std::size_t i) {
@@ -73,7 +72,7 @@ void totals_table(Writer& writer, const Group& group, const std::string& stem) {
   for (const auto* delay : group) {
     const auto& a = delay->intensity_m2_per_sr;
     table.cell(std::uint64_t{delay->key.orientation}).cell(time_of(writer.result, delay->key));
-    table.cell(a.value).cell(a.standard_error).cell(a.low).cell(a.high).cell(4.0 * kPi * a.value);
+    table.cell(a.value).cell(a.standard_error).cell(a.low).cell(a.high).cell(4.0 * constants::kPi * a.value);
     table.cell(delay->mean_delay_s.value * 1e9).cell(delay->mean_delay_s.standard_error * 1e9);
     table.cell(delay->rms_width_s.value * 1e9).cell(delay->rms_width_s.standard_error * 1e9);
     table.end_row();
@@ -160,7 +159,7 @@ double highest(const Curve& curve) {
 
 /// Depth along the line of sight on the upper axis, where the round trip makes it half the delay.
 void depth_axis(Plot& plot, double per_second, double start, double end) {
-  const double m_per_unit = 0.5 * kLightSpeed / per_second;
+  const double m_per_unit = 0.5 * constants::kLightSpeed_m_s / per_second;
   plot.line("set border 7; set xtics nomirror");
   plot.line("set x2range [" + number(start * m_per_unit) + ":" + number(end * m_per_unit) + "]");
   plot.line("set x2tics nomirror; set x2label 'depth away from the station (m)' offset 0,-0.5 textcolor '#555555'");
@@ -230,9 +229,9 @@ void pulse_picture(Writer& writer, const DelayResult& delay, const std::string& 
   plot.line("set label 1 " + gnuplot_text(title_of(writer, delay.key)) +
             " at screen 0.54, 0.97 center font ',19' textcolor '#000000'");
   plot.line("set label 2 " +
-            gnuplot_text("A = " + estimate(a, 1.0) + " m²/sr    σ = " + estimate(a, 4.0 * kPi) + " m²    mean " +
-                         estimate(delay.mean_delay_s, unit.per_second) + " " + unit.name + "    rms width " +
-                         estimate(delay.rms_width_s, unit.per_second) + " " + unit.name) +
+            gnuplot_text("A = " + estimate(a, 1.0) + " m²/sr    σ = " + estimate(a, 4.0 * constants::kPi) +
+                         " m²    mean " + estimate(delay.mean_delay_s, unit.per_second) + " " + unit.name +
+                         "    rms width " + estimate(delay.rms_width_s, unit.per_second) + " " + unit.name) +
             " at screen 0.51, 0.925 center font ',11.2' textcolor '#333333'");
   plot.line("set xlabel 'delay after a path by way of the reference point (" + std::string(unit.name) + ")'");
   plot.line("set ylabel 'A(t)  (m² sr⁻¹ " + std::string(unit.name) + "⁻¹)' offset -0.5,0");

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "clray/constants.hpp"
 #include "io/colour.hpp"
 #include "io/fits_file.hpp"
 #include "io/picture_file.hpp"
@@ -29,12 +30,12 @@ std::size_t pixel_count(const ImageResult& image) {
 }
 
 Linear develop(const ImageResult& image, const Source& source, bool& visible) {
-  constexpr double kPi = 3.14159265358979323846;
   auto weights = rgb_weights(image, source);
   visible = std::any_of(weights.begin(), weights.end(), [](const Vec3& w) { return w != Vec3{0.0}; });
   // Ultraviolet and infrared pictures are shown in grey: mean of the bands, white plate at 1.
   if (!visible)
-    weights.assign(weights.size(), Vec3{kPi / static_cast<double>(std::max<std::size_t>(weights.size(), 1))});
+    weights.assign(weights.size(),
+                   Vec3{constants::kPi / static_cast<double>(std::max<std::size_t>(weights.size(), 1))});
   const std::size_t pixels = pixel_count(image);
   Linear linear{image.width, image.height, std::vector<Vec3>(pixels, Vec3{0.0}), image.coverage};
   linear.coverage.resize(pixels, 1.0f);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "clray/constants.hpp"
 #include "io/writer.hpp"
 #include "text/text.hpp"
 
@@ -12,7 +13,6 @@ namespace clray::io {
 
 namespace {
 
-constexpr double kDegrees = 180.0 / 3.14159265358979323846;
 constexpr const char* kColours[] = {"#0b4f94", "#c8511b", "#2b8a3e", "#8a2b84",
                                     "#a67c00", "#3aa6a6", "#555555", "#d63a6a"};
 using Group = std::vector<const SpectrometerResult*>;
@@ -44,7 +44,7 @@ void spectrum_table(Writer& writer, const Group& group, const std::string& stem,
   for (const auto* record : group) {
     if (moving) {
       table.cell(std::uint64_t{record->key.orientation}).cell(time_of(writer.result, record->key));
-      table.cell(record->phase_angle_rad * kDegrees);
+      table.cell(record->phase_angle_rad * constants::kDegrees);
     }
     table.cell(std::string_view(band_name(*record))).cell(record->band.low_nm).cell(record->band.high_nm);
     table.cell(record->intensity_m2_per_sr.value).cell(record->intensity_m2_per_sr.standard_error);
@@ -81,7 +81,7 @@ void lightcurve_table(Writer& writer, const std::vector<Group>& bands, const std
   table.columns(columns);
   for (std::size_t i = 0; i < bands.front().size(); ++i) {
     const auto& first = *bands.front()[i];
-    table.cell(time_of(writer.result, first.key)).cell(first.phase_angle_rad * kDegrees);
+    table.cell(time_of(writer.result, first.key)).cell(first.phase_angle_rad * constants::kDegrees);
     for (const auto& band : bands) {
       if (i >= band.size()) {
         for (int k = 0; k < 4; ++k) table.cell(std::nan(""));

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "clray/constants.hpp"
 #include "io/writer.hpp"
 #include "text/text.hpp"
 
@@ -13,14 +14,13 @@ namespace clray::io {
 
 namespace {
 
-constexpr double kDegrees = 180.0 / 3.14159265358979323846;
 using Group = std::vector<const PressureResult*>;
 
 double azimuth_deg(const Vec3& s) {
-  return s.x == 0.0 && s.y == 0.0 ? 0.0 : std::atan2(s.y, s.x) * kDegrees;
+  return s.x == 0.0 && s.y == 0.0 ? 0.0 : std::atan2(s.y, s.x) * constants::kDegrees;
 }
 double elevation_deg(const Vec3& s) {
-  return std::atan2(s.z, std::sqrt(s.x * s.x + s.y * s.y)) * kDegrees;
+  return std::atan2(s.z, std::sqrt(s.x * s.x + s.y * s.y)) * constants::kDegrees;
 }
 double length(const Vec3& v) {
   return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "clray/constants.hpp"
 #include "clray/error.hpp"
 #include "io/writer.hpp"
 #include "text/text.hpp"
@@ -18,9 +19,6 @@ namespace clray::io {
 namespace {
 
 using Json = nlohmann::ordered_json;
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kLightSpeed = 299792458.0;  // m/s
-constexpr double kSolarConstant = 1361.0;    // W/m²
 
 Json vector(const Vec3& v, double scale = 1.0) {
   return Json::array({v.x * scale, v.y * scale, v.z * scale});
@@ -41,8 +39,8 @@ Json delay_entry(const DelayResult& delay) {
           {"standard_error", a.standard_error},
           {"confidence_95", {a.low, a.high}},
           {"relative_variance_of_variance", a.relative_variance_of_variance},
-          {"cross_section_m2", 4.0 * kPi * a.value},
-          {"cross_section_standard_error", 4.0 * kPi * a.standard_error},
+          {"cross_section_m2", 4.0 * constants::kPi * a.value},
+          {"cross_section_standard_error", 4.0 * constants::kPi * a.standard_error},
           {"mean_delay_ns", delay.mean_delay_s.value * 1e9},
           {"mean_delay_standard_error_ns", delay.mean_delay_s.standard_error * 1e9},
           {"mean_delay_relative_variance_of_variance", delay.mean_delay_s.relative_variance_of_variance},
@@ -69,7 +67,7 @@ Json spectrometer_entry(const SpectrometerResult& record) {
           {"received_standard_error", record.received_W_m2_standard_error},
           {"magnitude_AB", record.magnitude_AB},
           {"magnitude_standard_error", record.magnitude_standard_error},
-          {"phase_angle_deg", record.phase_angle_rad * 180.0 / kPi}};
+          {"phase_angle_deg", record.phase_angle_rad * 180.0 / constants::kPi}};
 }
 
 Json pressure_entry(const PressureResult& record, const Scene& scene) {
@@ -79,12 +77,12 @@ Json pressure_entry(const PressureResult& record, const Scene& scene) {
              {"low_nm", record.band.low_nm},
              {"high_nm", record.band.high_nm},
              {"source_W_m2", record.source_W_m2},
-             {"force_N_per_W_m2", vector(c.value, 1.0 / kLightSpeed)},
-             {"force_standard_error", vector(c.standard_error, 1.0 / kLightSpeed)},
-             {"torque_Nm_per_W_m2", vector(t.value, 1.0 / kLightSpeed)},
-             {"torque_standard_error", vector(t.standard_error, 1.0 / kLightSpeed)},
-             {"force_N_at_1361_W_m2", vector(c.value, kSolarConstant / kLightSpeed)},
-             {"torque_Nm_at_1361_W_m2", vector(t.value, kSolarConstant / kLightSpeed)},
+             {"force_N_per_W_m2", vector(c.value, 1.0 / constants::kLightSpeed_m_s)},
+             {"force_standard_error", vector(c.standard_error, 1.0 / constants::kLightSpeed_m_s)},
+             {"torque_Nm_per_W_m2", vector(t.value, 1.0 / constants::kLightSpeed_m_s)},
+             {"torque_standard_error", vector(t.standard_error, 1.0 / constants::kLightSpeed_m_s)},
+             {"force_N_at_1361_W_m2", vector(c.value, constants::kSolarConstant_W_m2 / constants::kLightSpeed_m_s)},
+             {"torque_Nm_at_1361_W_m2", vector(t.value, constants::kSolarConstant_W_m2 / constants::kLightSpeed_m_s)},
              {"coefficient_m2", vector(c.value)},
              {"coefficient_standard_error", vector(c.standard_error)},
              {"coefficient_relative_variance_of_variance", vector(c.relative_variance_of_variance)},

@@ -12,13 +12,12 @@
 #include <cmath>
 #include <limits>
 
+#include "clray/constants.hpp"
 #include "shared/elementary.h"
 
 namespace clray {
 namespace {
 
-constexpr double kPlanck_J_s = 6.62607015e-34, kLight_m_s = 299792458.0, kBoltzmann_J_K = 1.380649e-23;
-constexpr double kSun_K = 5772.0;
 /// Beyond this x the integrand is below the smallest normal number.
 constexpr double kLargest = 700.0;
 
@@ -63,11 +62,12 @@ double planck_integral(double low, double high) {
 
 /// hc/(λkT)
 double planck_x(double wavelength_nm, double temperature_K) {
-  return kPlanck_J_s * kLight_m_s / kBoltzmann_J_K / (wavelength_nm * 1e-9 * temperature_K);
+  return constants::kPlanck_J_s * constants::kLightSpeed_m_s / constants::kBoltzmann_J_K /
+         (wavelength_nm * 1e-9 * temperature_K);
 }
 
 double temperature_of(const Source& source) {
-  return source.blackbody_K > 0.0 ? source.blackbody_K : kSun_K;
+  return source.blackbody_K > 0.0 ? source.blackbody_K : constants::kSun_K;
 }
 
 bool is_table(const Source& source) {
@@ -165,9 +165,9 @@ double response_at(const Band& band, double wavelength_nm) {
 }
 
 double ab_zero_W_m2(const Band& band) {
-  constexpr double kZero_W_m2_Hz = 3631e-26;
   if (!(band.low_nm < band.high_nm)) return 0.0;
-  if (!band.response) return kZero_W_m2_Hz * kLight_m_s * 1e9 * (1.0 / band.low_nm - 1.0 / band.high_nm);
+  if (!band.response)
+    return constants::kAbZero_W_m2_Hz * constants::kLightSpeed_m_s * 1e9 * (1.0 / band.low_nm - 1.0 / band.high_nm);
   // dν = c/λ² dλ; panels of 2 % of λ leave the rule below rounding.
   const std::vector<double>& w = band.response->wavelength_nm;
   const std::vector<double>& t = band.response->value;
@@ -179,7 +179,7 @@ double ab_zero_W_m2(const Band& band) {
     const auto per_nm = [&](double x) { return (t[i] + slope * (x - w[i])) / (x * x); };
     sum += gauss(per_nm, low, high, std::ceil((high / low - 1.0) / 0.02));
   }
-  return kZero_W_m2_Hz * kLight_m_s * 1e9 * sum;
+  return constants::kAbZero_W_m2_Hz * constants::kLightSpeed_m_s * 1e9 * sum;
 }
 
 double source_band_W_m2(const Source& source, const Band& band) {
@@ -230,8 +230,8 @@ Band all_light(const Source& source) {
     low = source.spectrum->wavelength_nm.front();
     high = source.spectrum->wavelength_nm.back();
   } else if (source.blackbody_K > 0.0) {
-    low *= kSun_K / source.blackbody_K;
-    high *= kSun_K / source.blackbody_K;
+    low *= constants::kSun_K / source.blackbody_K;
+    high *= constants::kSun_K / source.blackbody_K;
   }
   Band band = make_band(low, high);
   band.name = fmt::format("{:.6g}-{:.6g}", low, high);

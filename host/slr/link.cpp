@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "clray/constants.hpp"
 #include "clray/error.hpp"
 #include "clray/keys.hpp"
 #include "scene/keys.hpp"
@@ -60,12 +61,12 @@ LinkBudget link_budget(const Station& s, double wavelength_nm, const Ranges& ran
   b.eta_r = s.eta_r;
   b.T_a = s.T_a;
   b.T_c = s.T_c;
-  b.photons_sent = s.pulse_energy_J * (wavelength_nm * 1e-9) / (kPlanck * kLightSpeed);
+  b.photons_sent = s.pulse_energy_J * (wavelength_nm * 1e-9) / (constants::kPlanck_J_s * constants::kLightSpeed_m_s);
   const double miss = s.pointing_rad / s.divergence_rad;
   b.gain = 8.0 / (s.divergence_rad * s.divergence_rad) * el_exp(-2.0 * miss * miss);
-  const auto sphere_m2 = [](double range_m) { return 4.0 * kPi * range_m * range_m; };
+  const auto sphere_m2 = [](double range_m) { return 4.0 * constants::kPi * range_m * range_m; };
   b.spread_per_m4 = 1.0 / (sphere_m2(ranges.out_m) * sphere_m2(ranges.back_m));
-  b.receiver_area_m2 = 0.25 * kPi * s.aperture_m * s.aperture_m;
+  b.receiver_area_m2 = 0.25 * constants::kPi * s.aperture_m * s.aperture_m;
   b.photons_per_m2 = b.eta_q * b.photons_sent * b.eta_t * b.gain * b.spread_per_m4 * b.receiver_area_m2 * b.eta_r *
                      (b.T_a * b.T_a) * (b.T_c * b.T_c);
   return b;

@@ -12,10 +12,6 @@
 
 namespace clray::slr {
 
-inline constexpr double kLightSpeed = 299792458.0;  // m/s, exact
-inline constexpr double kPlanck = 6.62607015e-34;   // J s, exact
-inline constexpr double kPi = 3.14159265358979323846;
-
 /// From the source to the body and from there to the observer, m.
 struct Ranges {
   double out_m, back_m;

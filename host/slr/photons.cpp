@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "clray/constants.hpp"
 #include "clray/error.hpp"
 #include "ephemeris/range.hpp"
 #include "slr/link.hpp"
@@ -32,7 +33,7 @@ Ranges ranges_of(const Result& result, const Scene& scene, const RangeModel& mod
 }
 
 std::vector<double> rates_of(const DelayResult& delay, const Station& station, double photons_per_m2) {
-  const double photons = 4.0 * kPi * photons_per_m2;
+  const double photons = 4.0 * constants::kPi * photons_per_m2;
   const Histogram bins{delay.first_bin_start_s, delay.bin_width_s, delay.bin_m2_per_sr};
   const PulseKernel kernel = pulse_kernel(station, delay.bin_width_s);
   const Histogram smeared = convolve(bins, kernel);
@@ -90,7 +91,7 @@ std::string link_budget_text(const Scene& scene, const Result& result) {
     text += fmt::format(", orientation {}:\n", delay.key.orientation);
   }
   return text + slr::link_text(slr::link_rows(*scene.station, scene.source.wavelength_nm,
-                                              4.0 * slr::kPi * delay.intensity_m2_per_sr.value,
+                                              4.0 * constants::kPi * delay.intensity_m2_per_sr.value,
                                               slr::ranges_of(result, scene, model, delay.key)));
 }
 

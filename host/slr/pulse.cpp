@@ -14,7 +14,6 @@ namespace clray::slr {
 
 namespace {
 
-constexpr double kFwhmPerSigma = 2.3548200450309493;  // 2 sqrt(2 ln 2)
 constexpr int kMostCuts = 64;
 constexpr double kReach = 9.0;  // a Gaussian beyond 9 sigma holds 2e-19 of its energy
 

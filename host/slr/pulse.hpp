@@ -10,6 +10,8 @@
 
 namespace clray::slr {
 
+inline constexpr double kFwhmPerSigma = 2.3548200450309493;  ///< of a Gaussian: 2 sqrt(2 ln 2)
+
 /// Masses in bins of equal width, the first of which starts at first_s.
 struct Histogram {
   double first_s = 0.0, width_s = 0.0;

@@ -8,18 +8,19 @@
 #include <cmath>
 #include <thread>
 
+#include "clray/constants.hpp"
 #include "clray/error.hpp"
 #include "device/shots.hpp"
 #include "scene/motion.hpp"
 #include "shared/photon.h"
 #include "slr/link.hpp"
+#include "slr/pulse.hpp"
 
 namespace clray::slr {
 
 namespace {
 
 constexpr std::uint32_t kBlock = 1u << 17;
-constexpr double kFwhmPerSigma = 2.3548200450309493;
 constexpr double kMostShots = 1e12;
 
 [[noreturn]] void refuse(const std::string& what, const std::string& key) {
@@ -109,7 +110,8 @@ Session::Session(const Result& result, const Scene& scene, const SessionOptions&
                     station_.gate_s * 1e9, first->bin_width_s * 1e9));
   }
   start_range_m_ = ranges_.range_m(start_);
-  start_brightness_ = 4.0 * kPi * link_budget(station_, scene.source.wavelength_nm, start_range_m_).photons_per_m2;
+  start_brightness_ =
+      4.0 * constants::kPi * link_budget(station_, scene.source.wavelength_nm, start_range_m_).photons_per_m2;
   ranges_.range_m(time(shots_ - 1));
 }
 
@@ -158,7 +160,7 @@ double Session::mean_cross_section_m2() const {
   double sum = 0.0;
   for (std::size_t i = 0; i < delays_.size(); ++i) {
     const auto shots = static_cast<double>(first_shots_[i + 1] - first_shots_[i]);
-    sum += shots * 4.0 * kPi * delays_[i]->intensity_m2_per_sr.value;
+    sum += shots * 4.0 * constants::kPi * delays_[i]->intensity_m2_per_sr.value;
   }
   return sum / static_cast<double>(shots_);
 }
@@ -181,7 +183,7 @@ void Session::run_in_order(const Gate& gate, std::uint64_t first, std::uint32_t 
   block->shots.time_ns.resize(count);
   block->shots.kind.resize(count);
   for (std::uint32_t i = 0; i < count; ++i) {
-    const double opens_s = since_s(first + i) + 2.0 * block->range(i) / kLightSpeed + gate.opens_s;
+    const double opens_s = since_s(first + i) + 2.0 * block->range(i) / constants::kLightSpeed_m_s + gate.opens_s;
     const double blind = expected_until(gate, (recovers_s_ - opens_s) * 1e9, block->light(i), settings_.noise_per_ns);
     double& time_ns = block->shots.time_ns[i];
     block->shots.kind[i] = photon_shot(gate.table.data(), gate.edges(), block->light(i), settings_.noise_per_ns, blind,

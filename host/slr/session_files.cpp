@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "clray/constants.hpp"
 #include "clray/error.hpp"
 #include "shared/photon.h"
 #include "slr/crd.hpp"
@@ -117,7 +118,7 @@ static SessionSummary write_files(Session& session, const Result& result, const 
   double next_supplement_s = session.since_s(first) + 60.0;
   const SessionSummary summary = session.run([&](const Shot& shot) {
     const bool signal = shot.kind == CLRAY_PHOTON_SIGNAL;
-    const double flight_ps = 2.0 * shot.range_m / kLightSpeed * 1e12 + shot.delay_ns * 1e3;
+    const double flight_ps = 2.0 * shot.range_m / constants::kLightSpeed_m_s * 1e12 + shot.delay_ns * 1e3;
     const auto whole = static_cast<std::int64_t>(std::llround(flight_ps));
     csv.seconds(shot.time.s, shot.time.ps).text(",").decimal(whole, 12).text(",");
     csv.decimal(static_cast<std::int64_t>(std::llround(shot.delay_ns * 1e6)), 6);

@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "clray/constants.hpp"
 #include "clray/detector.hpp"
 #include "clray/trace.hpp"
 
@@ -117,7 +118,7 @@ struct Source {
   std::vector<Band> bands;           ///< empty: the laser line; of a sun one of 400-700 nm, for pressure all its light
   std::optional<Spectrum> spectrum;  ///< W/m²/nm; a sun without one is Planck at 5772 K
   double blackbody_K = 0.0;          ///< > 0: Planck at this temperature, scaled to irradiance_W_m2
-  double irradiance_W_m2 = 1361.0;   ///< of a sun or blackbody, all wavelengths
+  double irradiance_W_m2 = constants::kSolarConstant_W_m2;  ///< of a sun or blackbody, all wavelengths
 };
 
 /// Who looks. `monostatic` puts the observer exactly at the source, whatever the direction says.

@@ -8,8 +8,6 @@
 
 #include "math/atomic64.cl"
 
-#define CLRAY_TWO_TO_32 4294967296.0
-#define CLRAY_TWO_TO_MINUS_32 2.3283064365386963e-10
 #define CLRAY_WIDE_LIMIT 274877906944.0  // 2^38: with 2^24 contributions a slice the sum stays below 2^62
 
 static void count_event(volatile __global i64 *counters, u32 which) { atomic_add_i64(counters + which, 1); }

@@ -60,7 +60,7 @@ static u32 sobol_reversed(const __global u32 *directions, u32 dimension, u32 ind
 }
 
 /// The middle of the bits' cell: in (0, 1), never an end.
-static f64 unit_from_bits(u32 bits) { return ((f64)bits + 0.5) * 2.3283064365386963e-10; }
+static f64 unit_from_bits(u32 bits) { return ((f64)bits + 0.5) * CLRAY_TWO_TO_MINUS_32; }
 
 /// `count` coordinates of dimensions 4·group-2+skip …, of the sampler's current point.
 static void sampler_draw(const Sampler *s, const __global u32 *directions, u32 group, u32 skip, u32 count, f64 *out) {

@@ -11,7 +11,7 @@
 /// 1 … 2^32.
 static u32 strata_choose(const __global ClrayStratum *strata, u32 first, u32 count, f64 u, f64 *place, f64 *size) {
   const __global ClrayStratum *s = strata + first;
-  const f64 x = u * 4294967296.0;
+  const f64 x = u * CLRAY_TWO_TO_32;
   u32 k = s[min((u32)(u * (f64)count), count - 1u)].guide;
   while (k + 1u < count && x > (f64)s[k].last + 1.0) ++k;
   const f64 start = k == 0u ? 0.0 : (f64)s[k - 1u].last + 1.0;

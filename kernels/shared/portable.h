@@ -5,6 +5,8 @@
 #ifndef CLRAY_PORTABLE_H
 #define CLRAY_PORTABLE_H
 
+#include "shared/constants.h"
+
 #ifdef __OPENCL_VERSION__
 typedef double f64;
 typedef float f32;
@@ -45,9 +47,6 @@ CLRAY_FN f64 CLRAY_AS_F64(u64 bits) {
   return x;
 }
 #endif
-
-#define CLRAY_PI 3.14159265358979323846
-#define CLRAY_INV_PI 0.31830988618379067154
 
 CLRAY_FN f64 f64_min(f64 a, f64 b) { return a < b ? a : b; }
 CLRAY_FN f64 f64_max(f64 a, f64 b) { return a > b ? a : b; }

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "clray/constants.hpp"
 #include "clray/error.hpp"
 #include "clray/session.hpp"
 #include "scene/keys.hpp"
@@ -87,7 +88,7 @@ TEST_CASE("a Gaussian pulse on one bin is the Gaussian") {
   const double sigma = 1e-9 / 2.3548200450309493;
   for (std::size_t i = 0; i < after.mass.size(); i += 7) {
     const double t = after.first_s + (static_cast<double>(i) + 0.5) * after.width_s - 0.005e-9;
-    const double density = std::exp(-0.5 * (t / sigma) * (t / sigma)) / (sigma * std::sqrt(2.0 * kPi));
+    const double density = std::exp(-0.5 * (t / sigma) * (t / sigma)) / (sigma * std::sqrt(2.0 * constants::kPi));
     CHECK(after.mass[i] / after.width_s == doctest::Approx(density).epsilon(1e-9));
   }
 }
@@ -114,7 +115,7 @@ TEST_CASE("a delta pulse equals no pulse bit for bit") {
   DelayResult d = one_bin(0.0);
   d.bin_m2_per_sr = before.mass;
   const auto rates = photons_per_ns(d, lit(), 1e6);
-  const double photons = 4.0 * kPi * link_budget(lit(), 532.0, 1e6).photons_per_m2 / (d.bin_width_s * 1e9);
+  const double photons = 4.0 * constants::kPi * link_budget(lit(), 532.0, 1e6).photons_per_m2 / (d.bin_width_s * 1e9);
   for (std::size_t i = 0; i < rates.size(); ++i) CHECK(rates[i] == before.mass[i] * photons);
 }
 
@@ -124,7 +125,7 @@ TEST_CASE("photons per ns keep their bins and all energy that stays in the windo
   d.bin_m2_per_sr.assign(400, 0.0);
   d.bin_m2_per_sr[200] = 2.0;
   Station station = lit();
-  const double all = 2.0 * 4.0 * kPi * link_budget(station, 532.0, 1e6).photons_per_m2;
+  const double all = 2.0 * 4.0 * constants::kPi * link_budget(station, 532.0, 1e6).photons_per_m2;
   for (const double fwhm_ps : {10.0, 100.0, 800.0}) {
     station.pulse_fwhm_s = fwhm_ps * 1e-12;
     const auto rates = photons_per_ns(d, station, 1e6);

@@ -12,6 +12,7 @@
 #include <glm/geometric.hpp>
 #include <sstream>
 
+#include "clray/constants.hpp"
 #include "clray/error.hpp"
 #include "clray/session.hpp"
 #include "shared/photon.h"
@@ -54,7 +55,7 @@ struct Pass {
     scene.motion->stop_s = seconds;
     scene.motion->period_s = 2.0 * seconds;
     // A hair more than the half turn's share, so that no orientation comes at its end.
-    scene.motion->step_rad = kPi / orientations * (1.0 + 1e-6);
+    scene.motion->step_rad = constants::kPi / orientations * (1.0 + 1e-6);
     result.seed = 42;
     for (int i = 0; i < orientations; ++i) {
       result.orientations.push_back(
@@ -98,7 +99,7 @@ TEST_CASE("a session: counts as expected, each photon where its orientation has 
   Pass pass(20.0, 10);
   Session session(pass.result, pass.scene, {});
   CHECK(session.shots() == 40000);
-  const double photons = 4.0 * kPi * 0.03 * link_budget(*pass.scene.station, 532.0, 1e6).photons_per_m2;
+  const double photons = 4.0 * constants::kPi * 0.03 * link_budget(*pass.scene.station, 532.0, 1e6).photons_per_m2;
   std::uint64_t last = 0, wrong = 0;
   const SessionSummary s = session.run([&](const Shot& shot) {
     CHECK(shot.time.s * kPicosecondsPerSecond + shot.time.ps == static_cast<std::int64_t>(shot.number) * 500000000);
@@ -181,7 +182,7 @@ TEST_CASE("dead time: a blind detector misses gates, and parts still agree with 
   Pass pass(50.0, 5);
   Station& station = *pass.scene.station;
   station.noise_per_ns = 0.005;
-  const double busy = -std::expm1(-0.5 - 4.0 * kPi * 0.03 * link_budget(station, 532.0, 1e6).photons_per_m2);
+  const double busy = -std::expm1(-0.5 - 4.0 * constants::kPi * 0.03 * link_budget(station, 532.0, 1e6).photons_per_m2);
   station.dead_time_s = 100e-6;  // over long before the next pulse
   SessionSummary s = Session(pass.result, pass.scene, {}).run([](const Shot&) {});
   check_share(static_cast<double>(s.signal + s.noise), 1e5, busy);

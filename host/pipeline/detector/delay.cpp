@@ -8,6 +8,7 @@
 #include <cstring>
 #include <limits>
 
+#include "clray/constants.hpp"
 #include "clray/error.hpp"
 #include "pipeline/detector/intensity.hpp"
 #include "pipeline/detector/room.hpp"
@@ -17,8 +18,7 @@
 namespace clray {
 namespace {
 
-constexpr double kLightSpeed = 299792458.0;
-constexpr double kNsToMetres = 0.299792458;
+constexpr double kMetresPerNs = constants::kLightSpeed_m_s / 1e9;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 // Its blocks, in the order of its row, and its settings (kernels/detector/delay.cl).
 enum { kBins, kLargest, kHits };
@@ -40,14 +40,14 @@ std::vector<double> delay_settings(const RoomContext& x) {
   for (std::size_t c = 0; c < x.plan.paths.low_m.size(); ++c) {
     const double low = x.plan.paths.low_m[c], high = x.plan.paths.high_m[c];
     const double margin = std::max((high - low) / std::max(1.0, asked_bins - 2.0), least);
-    const double first = std::isnan(start_ns) ? low - margin : start_ns * kNsToMetres;
-    const double last = std::isnan(stop_ns) ? high + margin : stop_ns * kNsToMetres;
+    const double first = std::isnan(start_ns) ? low - margin : start_ns * kMetresPerNs;
+    const double last = std::isnan(stop_ns) ? high + margin : stop_ns * kMetresPerNs;
     if (!(last > first))
       refuse(x.spec, fmt::format("the delay window is empty: it starts at {} ns and stops at {} ns",
-                                 first / kNsToMetres, last / kNsToMetres));
+                                 first / kMetresPerNs, last / kMetresPerNs));
     double bin = (last - first) / asked_bins;
     if (!std::isnan(bin_ps)) {
-      bin = bin_ps * 1e-3 * kNsToMetres;
+      bin = bin_ps * 1e-3 * kMetresPerNs;
       const double count = std::ceil((last - first) / bin);
       if (!(count <= 1e7))
         refuse(x.spec, fmt::format("bin_ps = {} makes {:.3g} bins, at most 1e7 expected", bin_ps, count));
@@ -71,8 +71,8 @@ void delay_moments(const PassPlan& plan, const SumReader& read, std::size_t v, s
     for (std::uint32_t r = 0; r < plan.request.replicates; ++r)
       pooled[k] += intensity_moment(plan, read, v, l, c, r, k);
   }
-  const double to_s = plan.scales.path_half_m / kLightSpeed;
-  const double middle_s = plan.scales.path_middle_m / kLightSpeed;
+  const double to_s = plan.scales.path_half_m / constants::kLightSpeed_m_s;
+  const double middle_s = plan.scales.path_middle_m / constants::kLightSpeed_m_s;
   const auto mean_of = [&](const double* s) { return middle_s + s[1] / s[0] * to_s; };
   const auto width_of = [&](const double* s) {
     const double mean = s[1] / s[0];
@@ -143,8 +143,8 @@ void delay_record(const RoomResults& x, std::size_t v, std::size_t l, std::size_
     for (Estimate* e : {&d.mean_delay_s, &d.rms_width_s})
       e->value = e->standard_error = e->relative_variance_of_variance = kNan;
   }
-  d.first_bin_start_s = x.detector.settings[kSettingFirst + kSettingStride * c] / kLightSpeed;
-  d.bin_width_s = x.detector.settings[kSettingBin + kSettingStride * c] / kLightSpeed;
+  d.first_bin_start_s = x.detector.settings[kSettingFirst + kSettingStride * c] / constants::kLightSpeed_m_s;
+  d.bin_width_s = x.detector.settings[kSettingBin + kSettingStride * c] / constants::kLightSpeed_m_s;
   delay_bins(x, v, l, c, &d);
   if (total > 0.0) {
     Diagnostics& g = x.out.diagnostics;
