@@ -14,17 +14,17 @@ namespace {
 
 constexpr double kMostStrips = 1024.0;  // over the body, of path length
 constexpr int kMostCuts = 32;           // parts of a cell
-constexpr double kMostSlots = 1 << 20;  // of all views, about
-constexpr std::size_t kMostLooks = 16;  // at weights: observers times lanes
-constexpr std::size_t kStretch = 4;     // intervals of path before and after one that share alike
-// Shares of the probability that go by area and by path length; the rest goes by what the surface sends.
+constexpr double kMostSlots = 1 << 20;  // about, over all views
+constexpr std::size_t kMostLooks = 16;  // weights of a cell: observers times lanes
+constexpr std::size_t kStretch = 4;     // intervals of path on either side that share one probability
+// These shares of the probability follow area and path length; the rest follows what the surface sends.
 constexpr double kByArea = 0.25;
 constexpr double kByPath = 0.375;
 
 /// A part of a cell: the area between two lines across its direction of steepest path.
 struct Slot {
   std::int64_t path;       // the interval of path length that it lies in
-  std::uint32_t column;    // 0: its strip is all of that; else 1 + the column of cells that its strip is
+  std::uint32_t column;    // 0: its strip is that whole interval; else 1 + the column of cells that is its strip
   std::uint32_t place;     // CLRAY_SLOT_*
   std::uint32_t from, to;  // shares of the cell's area below its two lines, in 1/CLRAY_SLOT_PARTS
   double weight;           // of the surface there
@@ -40,7 +40,7 @@ double share_below(double s, double r) {
   return 1.0 - (1.0 + r - s) * (1.0 + r - s) / (2.0 * r);
 }
 
-/// Cells of an n × n grid in order of direction from its middle, nearest the middle first where directions are equal.
+/// Cells of an n × n grid, sorted by their direction from its middle, then by their distance from it.
 std::vector<std::uint32_t> cells_by_direction(std::uint32_t n) {
   struct Key {
     double turn, size;
@@ -68,7 +68,8 @@ class Stratifier {
              std::size_t v, const BeamGrid& grid)
       : geometry_(geometry), plan_(plan), bins_(bins), beams_(beams), v_(v), grid_(grid), n_(grid.cells) {}
 
-  /// Appends to *strata and tells the view; does neither where there is nothing to stratify.
+  /// Appends the strata to *strata and notes their place in the view. Where there is nothing to stratify it does
+  /// neither.
   void run(const std::vector<BeamCell>& cells, const std::vector<std::uint32_t>& order, const Vec3& reference,
            std::vector<ClrayStratum>* strata, ClrayView* view, double* area_m2) {
     cells_ = &cells;
@@ -92,7 +93,7 @@ class Stratifier {
     return v3(v3_dot(body, grid_.u), v3_dot(body, grid_.v), v3_dot(body, grid_.toward));
   }
 
-  /// What each cell sends to the observers, as a share of all; the mean over observers and (some) lanes.
+  /// The share of the light sent to the observers that each cell sends: the mean over observers and some lanes.
   void plan_weights() {
     weights_.assign(cells_->size(), 0.0);
     if (!plan_.traits.connect) return;
@@ -120,7 +121,8 @@ class Stratifier {
     return surface_weight(material, plan_.surfaces.tables, n, v3(0.0, 0.0, 1.0), o);
   }
 
-  /// Strips between edges of the first histogram's bins: several bins or a whole part of one, 256 … 1024 over the body.
+  /// Strips end at edges of the first histogram's bins. A strip is some bins, or a whole part of one; a body has 256 to
+  /// 1024 of them.
   void plan_strips(const Vec3& reference) {
     const double* o = beams_.connections[v_ * plan_.traits.connections].direction;
     way_ = to_beam(o);
@@ -133,10 +135,10 @@ class Stratifier {
     const double cells = static_cast<double>(beams_.views.size() * cells_->size());
     lowest_ = static_cast<std::int64_t>(std::floor((plan_.paths.low() - bins_->first_m) / width_));
     highest_ = static_cast<std::int64_t>(std::floor((plan_.paths.high() - bins_->first_m) / width_));
-    cuts_ = std::clamp(static_cast<int>(8.0 * kMostSlots / cells), 1, kMostCuts);  // few cells need so many
+    cuts_ = std::clamp(static_cast<int>(8.0 * kMostSlots / cells), 1, kMostCuts);  // few cells need as many
   }
 
-  /// A cell cut where its surface crosses from one strip to the next.
+  /// Cuts a cell where its surface crosses from one strip to the next.
   void cut(std::uint32_t at) {
     const BeamCell& cell = (*cells_)[at];
     const std::uint32_t i = at % n_, j = at / n_;
@@ -150,7 +152,7 @@ class Stratifier {
     const auto steps =
         static_cast<std::uint32_t>(high > 0.0 ? std::floor(low / high * CLRAY_SLOT_STEEPNESS + 0.5) : 0.0);
     const double r = steps / static_cast<double>(CLRAY_SLOT_STEEPNESS);
-    // Within a cell, too, slots run round the beam's middle.
+    // Slots go round the middle of the beam, within a cell as well.
     const double x = 2.0 * i + 1.0 - n_, y = 2.0 * j + 1.0 - n_;
     const double along_u = swap ? (gu < 0.0 ? -1.0 : 1.0) : (gu < 0.0 ? r : -r);
     const double along_v = swap ? (gv < 0.0 ? r : -r) : (gv < 0.0 ? -1.0 : 1.0);
@@ -161,11 +163,11 @@ class Stratifier {
     const double middle = -(way_.x * u + way_.y * v + way_.z * cell.w);
     const double start = middle - 0.5 * high * (1.0 + r), span = high * (1.0 + r);
     const std::int64_t k0 = interval_of(start), k1 = interval_of(start + span);
-    if (span * n_ < width_) {  // face-on: strata of path would tell nothing apart, columns do
+    if (span * n_ < width_) {  // face-on: all paths are alike, so columns make the strata
       add(interval_of(middle), i + 1, at | (x < 0.0 ? CLRAY_SLOT_REVERSE : 0u), 0.0, 1.0, weights_[at]);
       return;
     }
-    if (k1 - k0 >= cuts_) {  // too steep for its strips: even parts
+    if (k1 - k0 >= cuts_) {  // too steep to be cut at every strip: even parts
       for (int k = 0; k < cuts_; ++k)
         add(interval_of(start + span * (k + 0.5) / cuts_), 0, place, share_below((1.0 + r) * k / cuts_, r),
             share_below((1.0 + r) * (k + 1.0) / cuts_, r), weights_[at]);
@@ -178,7 +180,8 @@ class Stratifier {
     }
   }
 
-  /// Of a path; of one that a steep cell's plane has beyond the body, the last that the body has.
+  /// The interval that a path length lies in. The plane of a steep cell may reach beyond the body; its paths there
+  /// count as the body's last.
   std::int64_t interval_of(double path) const {
     const double k = std::floor((path - first_) / width_);
     return static_cast<std::int64_t>(std::clamp(k, static_cast<double>(lowest_), static_cast<double>(highest_)));
@@ -205,8 +208,9 @@ class Stratifier {
       all += size;
       weight += slot.weight * size;
     }
-    // Equal shares for stretches of path, less where hardly anything is. Never for a sliver of an interval beside full
-    // ones: a rare ray of another weight would make rare totals that replicates seldom see.
+    // Stretches of path length have equal shares, but less where there is little area. A sliver beside full intervals
+    // must not have a share of its own: its few rays would have another weight than the rest, and most replicates would
+    // miss them.
     double filled = 0.0, shares = 0.0;
     for (const double a : area) filled += a > 0.0 ? 1.0 : 0.0;
     const double little = all / (16.0 * filled);
@@ -228,7 +232,8 @@ class Stratifier {
     }
   }
 
-  /// Ends of consecutive integer intervals that fill [0, 2^32) in proportion to `probabilities`, each at least 1 long.
+  /// Ends of intervals that fill [0, 2^32) one after the other, in proportion to `probabilities`. Each is at least 1
+  /// long.
   static std::vector<std::uint32_t> intervals(const std::vector<double>& probabilities) {
     double sum = 0.0;
     for (const double p : probabilities) sum += p;
@@ -254,7 +259,7 @@ class Stratifier {
     }
   }
 
-  /// Slots in order of their strips, each strip's in the order in which they came; where each strip starts, and an end.
+  /// Sorts the slots by strip and keeps their order within each. Returns where each strip starts, and the end.
   std::vector<std::size_t> sort_by_strip(std::vector<Slot>* sorted) const {
     std::vector<std::size_t> next(static_cast<std::size_t>(highest_ - lowest_ + 1) * (n_ + 1) + 1, 0), starts;
     for (const Slot& slot : slots_) ++next[strip(slot) + 1];

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// See course.hpp. A search doubles until the target is met, then confirms once on fresh scrambles at equal size; the
-// confirmation alone is the result. One that misses sends the search on; where the cap on rays does not let it, that
-// confirmation is the result: the search had met the target by luck.
+// See course.hpp. A search doubles its points until the target is met. Then one confirmation of equal size runs on
+// fresh scrambles, and it alone is the result. Where it misses the target, the search goes on. Where max_rays forbids
+// that, the confirmation that missed is the result: the search had met the target by luck.
 #include "pipeline/course.hpp"
 
 #include <algorithm>
@@ -93,7 +93,7 @@ void Course::took(double relative_error) {
 }
 
 void Course::cut(const char* by) {
-  // What ends early equals a run with `rays` of the search's count, so it is the search's.
+  // A run that ends early must equal one with `rays` of that count, so its result is the search's.
   if (state_.phase == CourseState::confirm || state_.phase == CourseState::search) state_.error = state_.search_error;
   state_.answer_confirmed = false;
   state_.partial = true;

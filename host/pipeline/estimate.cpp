@@ -43,7 +43,7 @@ double solve_student_t95(int freedom) {
   return 0.5 * (low + high);
 }
 
-/// Of sums of squares and fourth powers of the deviations: MCNP's VOV.
+/// MCNP's VOV, from the sums of squares and of fourth powers of the deviations.
 double variance_of_variance(double second, double fourth, double count) {
   return second > 0.0 ? fourth / (second * second) - 1.0 / count : std::numeric_limits<double>::quiet_NaN();
 }
@@ -56,7 +56,7 @@ double normal_variance_of_variance(int replicates) {
 }
 
 double student_t95(int freedom) {
-  // Every estimate of every bin asks, always for one of the few counts of replicates that a run may have.
+  // Each estimate of each bin asks for it, and a run has few counts of replicates.
   static const std::array<double, 64> table = [] {
     std::array<double, 64> t{};
     for (int n = 1; n < 64; ++n) t[static_cast<std::size_t>(n)] = solve_student_t95(n);

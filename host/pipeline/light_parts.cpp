@@ -11,7 +11,7 @@
 namespace clray {
 namespace {
 
-constexpr double kNegligible = 1e-10;  // variance of a key over its largest value squared, times the share of the light
+constexpr double kNegligible = 1e-10;  // of (variance of a key / its largest value squared)·(share of the light)
 constexpr int kEvenCells = 128;        // side by side in ln λ, between which points of spectra are edges too
 
 /// The spectra of all surfaces of the scene and its variants.
@@ -106,7 +106,7 @@ LightParts parts_of(const Scene& scene, const Band& band) {
     for (std::size_t p = 0; p + 1 < cuts.size(); ++p) {
       const double before = cells.spread(cuts[p], cuts[p + 1]);
       for (std::size_t k = cuts[p] + 1; k < cuts[p + 1]; ++k) {
-        // Both sides need light, or their means would be nobody's.
+        // Both sides need light: without it a part has no mean.
         if (!(cells.light(cuts[p], k) > 0.0 && cells.light(k, cuts[p + 1]) > 0.0)) continue;
         const double gain = before - cells.spread(cuts[p], k) - cells.spread(k, cuts[p + 1]);
         if (gain > best) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// See outcome.hpp. What a detector's sums mean is said in its room (detector/); here they are only asked, and their
-// records put in order.
+// See outcome.hpp. A detector's room (detector/) says what its sums mean. This file asks the rooms and puts the records
+// in order.
 #include "pipeline/outcome.hpp"
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace clray {
 namespace {
 
-/// Numbers with a unit, as results: the default of DetectorRoom::results.
+/// Makes a result of each number that has a unit: the default of DetectorRoom::results.
 void table_results(const RoomResults& r) {
   const SumShape& shape = r.plan.layout.shape;
   for (std::size_t v = 0; v < shape.views; ++v) {
@@ -38,7 +38,7 @@ void table_results(const RoomResults& r) {
   }
 }
 
-/// The default of DetectorRoom::targets.
+/// Makes a target of each number that has a unit: the default of DetectorRoom::targets.
 void table_targets(const PassPlan& plan, const PassDetector& detector, const SumReader& read,
                    std::vector<Target>* targets) {
   const SumShape& shape = plan.layout.shape;
@@ -75,7 +75,7 @@ void add_counters(const Sums& sums, Result* out) {
   out->paths.capped += n[CLRAY_COUNT_CAPPED];
 }
 
-/// Places of names in the scene's own order.
+/// The place of each name in the scene's order.
 class Places {
  public:
   explicit Places(const Scene& scene) {
@@ -175,7 +175,7 @@ std::uint64_t digest_of(std::uint64_t state, const PassPlan& plan, const Sums& s
   const std::uint64_t head[3] = {static_cast<std::uint64_t>(plan.scales.weight_bits), plan.request.replicates,
                                  sums.points};
   state = fnv1a(state, head, sizeof head);
-  // Only what the scene asked for: the generic program keeps more.
+  // The generic program has more detectors than the scene asked for; those do not count.
   for (const PassDetector& d : plan.detectors) {
     if (d.asked) state = digest_values(state, plan.layout, sums, d.first_block, d.last_block);
   }

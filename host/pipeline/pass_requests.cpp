@@ -14,8 +14,9 @@ namespace {
 
 constexpr std::size_t kAnyNumber = std::numeric_limits<std::size_t>::max();
 
-/// Wavelengths of a picture traced at once: what a hit costs is paid once for all of them. Their sums stay within a
-/// quarter of a GiB, whatever the device, so that the digest is the same on all; the rest goes in further chunks.
+/// How many lanes of a picture are traced together, so that each hit is found once for all of them. Their sums stay
+/// within a quarter of a GiB on every device, because the digest depends on the number. The rest follow in later
+/// passes.
 std::size_t lanes_together(const DetectorSpec& spec, std::size_t views) {
   const double pixels = detector_value(spec, "width") * detector_value(spec, "height") * static_cast<double>(views);
   const double lanes = 0x1p28 / (pixels * 2.0 * sizeof(std::int64_t));
@@ -23,8 +24,8 @@ std::size_t lanes_together(const DetectorSpec& spec, std::size_t views) {
 }
 
 /// Directions of the Sun on a grid, body frame: elevations (from the xy plane) from -90 to 90 degrees inclusive,
-/// azimuths (from +x toward +y) from 0 to 360 exclusive, one at the poles. Observers stay where the motion starts; one
-/// at the source goes along with it.
+/// azimuths (from +x toward +y) from 0 to 360 exclusive, one at the poles. Observers stay where the motion starts; an
+/// observer at the source moves with it.
 std::vector<Orientation> sun_grid(const Scene& scene, int azimuths, int elevations) {
   const Orientation start = orientations(scene).front();
   std::vector<Orientation> grid;

@@ -30,7 +30,7 @@ PathTraits traits_of(const Scene& scene, const PassRequest& request, const Surfa
   return t;
 }
 
-/// The bound of first-bounce weights, from which their scale follows: so it depends on the scene alone.
+/// The bound of first-bounce weights. The scale of the sums follows from it, and so depends on the scene alone.
 double first_bound(const PassPlan& plan) {
   double bound = 0.0;
   for (std::size_t v = 0; v < plan.beams.views.size(); ++v) {
@@ -89,8 +89,8 @@ std::vector<double> settings_of(const Scene& scene, const Geometry& geometry, co
   return settings != nullptr ? settings({scene, spec, plan, geometry}) : row_values(row, spec.parameters);
 }
 
-/// The detectors of a pass in the order of detector.def: those asked for, and the inner ones that they read. The
-/// generic program has every one that follows light, too.
+/// The detectors of a pass, in the order of detector.def: those that were asked for, and the inner ones that they read.
+/// The generic program also has every detector that follows light.
 std::vector<PassDetector> detectors_of(const Scene& scene, const Geometry& geometry, const PassPlan& plan) {
   const bool all = !scene.trace.specialise, pixels = plan.request.pixels;
   std::vector<PassDetector> detectors;
@@ -116,7 +116,7 @@ std::vector<PassDetector> detectors_of(const Scene& scene, const Geometry& geome
   return detectors;
 }
 
-/// Lays out the sums of *detectors, which then know their blocks.
+/// Lays out the sums of *detectors and notes the blocks of each.
 SumLayout layout_of(const PassPlan& plan, std::vector<PassDetector>* detectors) {
   SumLayout layout;
   layout.shape = {plan.beams.views.size(), plan.request.lanes.size(), plan.traits.connections, plan.request.replicates};

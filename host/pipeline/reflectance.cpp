@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// See reflectance.hpp. Intervals are halved until the function in the middle, and at the quarters, is that of the line.
+// See reflectance.hpp. An interval is halved until the line over it meets the function in the middle and at the
+// quarters.
 #include "pipeline/reflectance.hpp"
 
 #include <algorithm>
@@ -10,9 +11,9 @@
 namespace clray {
 namespace {
 
-constexpr double kLeastMu = 0x1p-40;      // stands for grazing incidence itself, where models may be singular
-constexpr double kLeastWidth = 0x1p-40;   // of an interval: a step in a table stays a step this wide
-constexpr std::size_t kMostNodes = 4096;  // the rest of a function that is rough everywhere stays as it is
+constexpr double kLeastMu = 0x1p-40;      // stands for mu = 0, where models may be singular
+constexpr double kLeastWidth = 0x1p-40;   // of an interval: a step in a table becomes a ramp of this width
+constexpr std::size_t kMostNodes = 4096;  // beyond them a function that is rough everywhere is halved no further
 
 struct Node {
   double mu, value;
@@ -37,7 +38,7 @@ class Table {
   Node node(double mu) const { return {mu, reflectance_(std::max(mu, kLeastMu))}; }
   Node between(const Node& a, const Node& b) const { return node(a.mu + 0.5 * (b.mu - a.mu)); }
 
-  /// Appends what lies after `a` up to `b`; `middle` lies between them.
+  /// Appends the nodes after `a` up to and including `b`; `middle` is the node between them.
   void refine(const Node& a, const Node& middle, const Node& b) {
     const Node first = between(a, middle), last = between(middle, b);
     if (b.mu - a.mu > kLeastWidth && nodes_.size() < kMostNodes &&

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// See shared_planes.hpp. Planes are sorted by one number, a generic combination of their coefficients, so that only
-// neighbours in that order are compared; within a plane, outlines are swept along one axis and tested for separating
-// edges.
+// See shared_planes.hpp. Planes are sorted by a generic combination of their coefficients, and only neighbours in that
+// order are compared. Within a plane, outlines are swept along one axis. Two of them overlap where no edge of either
+// separates them.
 #include "pipeline/shared_planes.hpp"
 
 #include <algorithm>
@@ -32,10 +32,11 @@ double dot(const Point3& a, const Point3& b) {
   return std::fma(a[0], b[0], std::fma(a[1], b[1], a[2] * b[2]));
 }
 
-/// Of an outline, turned to the side where kGeneric points: two faces back to back have one.
+/// The plane of an outline. Its normal is turned to the side of kGeneric, so two faces back to back have the same
+/// plane.
 Plane plane_of(const FaceOutline& outline) {
   Plane plane;
-  // The smallest corner first: whatever corner a face starts at, the bits are the same.
+  // It begins at the smallest corner, so that the bits do not depend on the corner that a face starts with.
   std::vector<Point3> p = outline.corners;
   std::rotate(p.begin(), std::min_element(p.begin(), p.end()), p.end());
   Point3 sum{{0.0, 0.0, 0.0}};
@@ -69,7 +70,7 @@ struct Flat {
   std::array<double, 2> low{{1e300, 1e300}}, high{{-1e300, -1e300}};
 };
 
-/// Drops the coordinate in which the plane is steepest: the others keep their bits, so shared edges stay shared.
+/// Drops the coordinate along which the normal is largest. The others keep their bits, so shared edges stay shared.
 Flat flatten(const FaceOutline& outline, const Point3& normal) {
   int drop = 0;
   for (int i = 1; i < 3; ++i) {
@@ -179,7 +180,7 @@ class Finder {
         if (keys_[j].value - keys_[i].value > kWindow) break;
         if (!one_plane(keys_[i].face, keys_[j].face)) continue;
         join(keys_[i].face, keys_[j].face);
-        break;  // what else lies in this plane joins through the face found
+        break;  // the other faces of this plane join through the one found
       }
     }
   }
@@ -230,7 +231,7 @@ class Finder {
                                   [&](std::uint32_t k) { return flats[k].high[0] <= flats[m].low[0]; }),
                    list.end());
         for (const std::uint32_t k : list) {
-          // A pair is looked at in the first stripe that has both.
+          // A pair is compared in the first stripe that has both.
           if (s != std::max(first, stripe(flats[k].low[1])) || !overlap(flats[k], flats[m], outlines[k], outlines[m]))
             continue;
           shared[k] = shared[m] = 1;

@@ -10,7 +10,7 @@
 namespace clray {
 namespace {
 
-constexpr std::uint64_t kMostTests = 1ull << 27;  // of a cell against a primitive: about a second
+constexpr std::uint64_t kMostTests = 1ull << 27;  // of primitives against cells: about a second of work
 constexpr int kDirections = 32;                   // half-planes that bound an analytic shape's silhouette
 
 /// A point in the beam's axes.
@@ -25,7 +25,7 @@ class Rasteriser {
     cells_.resize(static_cast<std::size_t>(n_) * n_);
     cell_u_ = grid.size_u / n_;
     cell_v_ = grid.size_v / n_;
-    // More than all rounding between here and the device's ray.
+    // Larger than all rounding from here to the device's ray.
     margin_ = 1e-9 * (grid.size_u + grid.size_v) + 1e-14 * (std::fabs(grid.u0) + std::fabs(grid.v0) + geometry.radius);
   }
 
@@ -61,7 +61,7 @@ class Rasteriser {
     return static_cast<int>(std::clamp(std::floor(x), 0.0, static_cast<double>(n_ - 1)));
   }
 
-  /// Equally near surfaces go to the one whose front is seen, then to the smaller canonical id, as hits do.
+  /// Of equally near surfaces the one that shows its front wins, then the smaller canonical id, as with hits.
   void mark(std::size_t at, BeamCell::State state, double w, const vec3& normal) {
     BeamCell& cell = cells_[at];
     if (state < cell.state) return;
@@ -148,7 +148,7 @@ class Rasteriser {
       double x, y, high, half;
     } planes[kDirections];
     for (int k = 0; k < kDirections; ++k) {
-      // Directions need not be even: the points of a square's edge will do, and need no trigonometry.
+      // The directions need not be even, so points on the edge of a square will do; they need no trigonometry.
       const double f = 8.0 * k / kDirections;
       const int side = static_cast<int>(f) / 2;
       const double g = f - 2.0 * side - 1.0;

@@ -98,7 +98,7 @@ std::vector<std::vector<Lane>> lane_groups(const Scene& scene, const std::vector
       if (scatter && (group.variant != one.variant || group.lanes.size() == kMostTogether)) return false;
       return group.lanes.size() < most;
     };
-    // The last that fits: earlier ones are full.
+    // The last group that fits; the earlier ones are full.
     const auto found = std::find_if(groups.rbegin(), groups.rend(), fits);
     if (found == groups.rend()) {
       groups.push_back(std::move(one));

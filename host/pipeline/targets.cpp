@@ -11,7 +11,8 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-/// Of the length of a mean vector: the error along it. Across it the length changes in second order only.
+/// The error of a mean vector's length: its error along the vector. What lies across changes the length in second
+/// order.
 double error_of_length(const Target& target, const std::vector<double>& means, double length) {
   std::vector<double> along(target.components.front().size());
   for (std::size_t r = 0; r < along.size(); ++r) {

@@ -47,7 +47,7 @@ std::uint64_t picture_points(const PassPlan& plan, const TraceOptions& options) 
   } else if (options.rays != 0) {
     samples = static_cast<double>(options.rays) / (static_cast<double>(size.width) * size.height);
   } else if (options.target_error_percent > 0.0) {
-    samples = 64.0;  // where a picture's search for a target gives up; `samples` or --rays go on
+    samples = 64.0;  // a picture's search for a target gives up there; `samples` or --rays ask for more
   }
   return power_of_two_above(static_cast<std::uint64_t>(std::max(1.0, std::ceil(samples / plan.request.replicates))));
 }
@@ -58,12 +58,12 @@ CourseRules rules_of(const PassPlan& plan, const TraceOptions& o) {
   rules.target_asked = o.target_error_percent > 0.0;
   rules.target = o.target_error_percent / 100.0;
   rules.enough_points = (kZeroRays + replicates - 1) / replicates;
-  // A picture's error is a mean over its pixels: each half-difference has one degree of freedom, all have many.
+  // A pixel's half-difference has one degree of freedom; a picture's error is the mean over all pixels and has many.
   rules.t95 = plan.request.pixels ? 1.96 : student_t95(static_cast<int>(replicates) - 1);
   if (plan.request.pixels) {
     rules.fixed_points = picture_points(plan, o);
     rules.fixed_end = o.rays != 0 || !rules.target_asked ? "rays" : "samples";
-    // Large cubes take longer to read than to trace: with no target to meet, three doublings tell the error's course.
+    // Large cubes take longer to read than to trace. Without a target three doublings show how the error falls.
     rules.first_points = rules.target_asked ? 1 : std::max<std::uint64_t>(1, rules.fixed_points / 4);
     rules.enough_points = 0;
     rules.least_to_stop = 4;
@@ -84,7 +84,7 @@ CourseRules rules_of(const PassPlan& plan, const TraceOptions& o) {
   return rules;
 }
 
-/// Root mean square over covered pixels of the standard error, over their mean radiance.
+/// The root mean square of the standard errors of all covered pixels, over their mean radiance.
 double picture_error(const PassPlan& plan, const Sums& sums) {
   const std::uint64_t pixels = static_cast<std::uint64_t>(plan.request.picture.width) * plan.request.picture.height;
   const PassDetector& detector = *find_detector(plan, "pixels");
@@ -177,7 +177,7 @@ class PassDriver {
     return true;
   }
 
-  /// Points at which this phase is likely to end: the error falls at least as N^-1/2.
+  /// The points at which this phase is likely to end, as the error falls at least as N^-1/2.
   double goal_points(const CourseStep& step) const {
     const CourseRules& rules = course_.rules();
     const std::uint64_t known = step.confirms ? course_.state().confirm_size : rules.fixed_points;
@@ -199,7 +199,7 @@ class PassDriver {
     const CourseState& state = course_.state();
     const CourseRules& rules = course_.rules();
     out_.sums = std::move(state.answer_confirmed ? confirmed_ : searched_);
-    // Running out of the time asked for, with nothing else asked, is no early end.
+    // A run that was given a time and nothing else is complete when its time is over.
     const bool only_time = rules.fixed_points == kMostPoints && std::string(state.ended_by) == "time limit";
     out_.partial = state.partial && !only_time;
     out_.target_asked = rules.target_asked;
@@ -274,7 +274,7 @@ Result trace(const Scene& scene, Device& device, const TraceHooks& hooks) {
     result.partial = result.partial || outcome.partial;
     result.target_asked = result.target_asked || outcome.target_asked;
     if (outcome.target_asked) {
-      // The first pass without the target speaks for the result, else the one with the largest error.
+      // The result's ending is that of the first pass that missed the target, else of the one with the largest error.
       if (target_reached && (!outcome.target_reached || !(outcome.ending.half_width <= ending.half_width)))
         ending = outcome.ending;
       target_reached = target_reached && outcome.target_reached;

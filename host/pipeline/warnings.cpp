@@ -36,11 +36,11 @@ std::string missed_target(const Scene& scene, const Ending& ending) {
                      ending.rays, why);
 }
 
-constexpr double kTimesNormal = 4.0;   // the normal variance of the variance: 1 of 2000 normal samples of 16 lies above
-constexpr double kLeastError = 1e-6;   // relative; below it the spread is that of fixed-point rounding
+constexpr double kTimesNormal = 4.0;   // over that of normal replicates; 1 in 2000 sets of 16 normal ones exceeds it
+constexpr double kLeastError = 1e-6;   // relative; a smaller spread is that of fixed-point rounding
 constexpr double kUnseenShare = 0.10;  // of a total
 
-/// Names what few replicates make; empty where nothing does.
+/// Says which claimed errors rest on few replicates; empty where none does.
 std::string few_replicates(const PassPlan& plan, const Geometry& geometry, const Sums& sums) {
   const double normal = normal_variance_of_variance(static_cast<int>(plan.request.replicates));
   int count = 0, doubtful = 0;
@@ -69,8 +69,8 @@ std::string few_replicates(const PassPlan& plan, const Geometry& geometry, const
       normal);
 }
 
-/// Whether a normal may lie anywhere between those that rays met: curved shapes, and meshes so fine that many of their
-/// facets were never met. A few flat faces show their whole lobe to the first rays that meet them.
+/// Whether the body has normals that no ray met: true of curved shapes, and of meshes so fine that many facets were
+/// never hit. A flat face has one normal, which its first ray meets.
 bool curved(const Geometry& geometry, double rays) {
   constexpr double kRaysPerFacet = 100.0;
   for (const ClrayPrimitive& p : geometry.primitives) {
@@ -87,7 +87,7 @@ double bound_of_lane(const PassPlan& plan, std::size_t lane, double cos_half_pha
   return bound;
 }
 
-/// The largest share of a total that could lie where no ray went, beyond what its claimed error allows for; 0 for none.
+/// The largest share of a total that could be missing because no ray met it; 0 where the claimed error covers it.
 double unseen_share(const PassPlan& plan, const Sums& sums) {
   const SumReader read(plan, sums);
   const double t95 = student_t95(static_cast<int>(plan.request.replicates) - 1);

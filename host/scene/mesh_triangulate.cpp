@@ -87,7 +87,7 @@ class EarClipper {
       next_[previous_[at]] = next_[at];
       previous_[next_[at]] = previous_[at];
       --left_;
-      // Two steps on: clipping side by side would make a fan of slivers.
+      // Two corners on, since ears clipped side by side would make a fan of slivers.
       at = next_[next_[at]];
     }
     triangles.push_back({previous_[at], at, next_[at]});
@@ -95,8 +95,9 @@ class EarClipper {
 
  private:
   std::uint32_t find_ear(std::uint32_t start) const {
-    // A corner on the closing diagonal blocks an ear at first, so that no triangle without area is left over;
-    // then corners may touch it (holes bridged by a double edge); then repeated and straight corners go.
+    // First round: a corner on the diagonal that would close the ear blocks it, so that no triangle without area is
+    // left. Second: a corner may touch the diagonal, as a hole bridged by a double edge does. Third: corners without an
+    // angle are clipped.
     for (int leniency = 0; leniency < 3; ++leniency) {
       std::uint32_t i = start;
       for (std::size_t k = 0; k < left_; ++k, i = next_[i]) {
@@ -113,7 +114,7 @@ class EarClipper {
     if (!(area > 0.0)) return false;
     for (std::uint32_t j = next_[next_[i]]; j != previous_[i]; j = next_[j]) {
       const Point& q = p_[j];
-      // A corner at an end of the diagonal touches but does not block, unless its own edges enter the ear.
+      // A corner at the same place as one of the ear's blocks it only if its edges enter the ear.
       if (same(q, a) || same(q, b) || same(q, c)) {
         if (enters(j, a, b, c)) return false;
         continue;

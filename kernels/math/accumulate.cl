@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Adding without an order: numbers become 64-bit integers q = rte(w·2^S), so sums have the same bits whatever the
-// order of work. NaN and infinity are sorted out before the conversion (devices differ there); a number too large
-// for the first accumulator goes to a second at scale S - 32, what that rounds away to the first; one too large for both
-// is counted.
+// Sums that do not depend on the order of work: a number w becomes the 64-bit integer rte(w·2^S), and integers add up
+// alike in any order. NaN and infinity are counted before the conversion, in which devices differ. A number too large
+// for the first accumulator goes to a second one, at scale S - 32; what that scale rounds away goes to the first. A
+// number too large for both is counted.
 #ifndef CLRAY_ACCUMULATE_CL
 #define CLRAY_ACCUMULATE_CL
 

@@ -76,20 +76,20 @@ typedef struct ClrayView {
   u32 root;                   // of the top-level BVH (or of the only one)
   u32 first_stratum, strips;  // strata of the beam; 0: its rectangle is sampled evenly
   u32 grid;                   // cells along each edge of the rectangle
-  // The share of a ray is CLRAY_SLOT_PARTS·(area of its slot over a cell's)/(widths of strip and slot) times this.
+  // Share of a ray = share_scale·CLRAY_SLOT_PARTS·(area of its slot / area of a cell)/(width of strip·width of slot).
   f64 share_scale;
 } ClrayView;
 
-/// One of several to choose from by a uniform number: a view's strips, then the slots of a strip (host/pipeline/
-/// beam_strata.hpp). It stands for the 32-bit numbers after its forerunner's `last` up to its own.
+/// A stratum of the beam: a strip of a view, or a slot of a strip (host/pipeline/beam_strata.hpp). A uniform 32-bit
+/// number chooses the stratum whose `last` is the first that is not below it.
 typedef struct ClrayStratum {
   u32 last;
-  u32 guide;  // of the k-th of n: the first stratum that may hold numbers from k/n on
-  u32 a, b;   // strip: its first slot and their number; slot: CLRAY_SLOT_* and the part of its cell
+  u32 guide;  // in the k-th of n strata: where a search for numbers from k/n of 2^32 on may begin
+  u32 a, b;   // of a strip: its first slot, the number of its slots; of a slot: see below
 } ClrayStratum;
-// A slot's a: row·grid + column of its cell, which way path lengthens there (the lesser over the greater of its slopes
-// along u and v; where they fall; which is greater). b: shares of the cell's area, in 1/CLRAY_SLOT_PARTS, at the slot's
-// low (bits 0-15) and high end (bits 16-31, plus one), along that way.
+// A slot is a part of a cell between two lines of equal path length. Its `a` holds the cell (row·grid + column) and the
+// direction of the lines: the smaller slope of path over the larger, which of u and v has the larger, and which fall.
+// Its `b` holds the area of the cell below each line, in 1/CLRAY_SLOT_PARTS: bits 0-15, and bits 16-31 plus one.
 #define CLRAY_SLOT_CELL 0x3ffffu
 #define CLRAY_SLOT_STEEPNESS_SHIFT 18
 #define CLRAY_SLOT_PARTS 65536
