@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tables by the names of their columns; see csv_table.hpp. Units are ratios of two whole numbers to a base, so that
-// nearly all conversions are one exact factor or divisor: a kilometre and an ångström lose nothing.
+// Tables by the names of their columns; see csv_table.hpp. A unit is a ratio of two whole numbers to a base unit, so
+// that nearly every conversion is one exact factor or divisor. Kilometres and ångströms lose no digits.
 #include "scene/csv_table.hpp"
 
 #include <fmt/format.h>
@@ -53,13 +53,13 @@ const Unit& unit_of(const std::string& name) {
   return *found;
 }
 
-/// `value` times or over one number where the units allow it.
+/// Converts by one product or quotient where the units allow it.
 double converted(double value, const Unit& from, const Unit& to) {
   const double times = from.times * to.over, over = from.over * to.times;
   return times >= over ? value * (times / over) : value / (over / times);
 }
 
-/// A column of a file: which of those asked for it is, and the unit that it states.
+/// A column of a file: which of the expected columns it is, and the unit that it states.
 struct Place {
   std::size_t column = 0;
   const Unit* unit = nullptr;
@@ -85,7 +85,7 @@ std::vector<std::string> fields_of(const std::string& line) {
   return fields;
 }
 
-/// Whether the whole text is a number, be it not finite.
+/// Whether the whole text is a number, finite or not.
 bool is_number(const std::string& text, double* value) {
   const char* begin = text.data() + (text.size() > 1 && text[0] == '+' && text[1] != '-' ? 1 : 0);
   const char* end = text.data() + text.size();
@@ -94,7 +94,7 @@ bool is_number(const std::string& text, double* value) {
   return read.ec != std::errc::invalid_argument && read.ptr == end;
 }
 
-/// A header's word as it is compared: "Range [km]" is "range_km", "\"range_km\"" too.
+/// A header's word in the form that is compared: "Range [km]" and "\"range_km\"" become "range_km".
 std::string folded(std::string word) {
   const std::pair<const char*, const char*> kWords[] = {{"%", "_percent"}, {"²", "2"},        {"µ", "u"},
                                                         {"μ", "u"},        {"Å", "angstrom"}, {"λ", "lambda"}};
@@ -116,7 +116,7 @@ std::string folded(std::string word) {
   return text;
 }
 
-/// What a header's word means among the columns asked for.
+/// Which of the expected columns a header's word means.
 std::optional<Place> place_of(const std::string& word, const std::vector<CsvColumn>& columns) {
   const std::string name = folded(word);
   for (std::size_t c = 0; c < columns.size(); ++c) {
@@ -182,7 +182,7 @@ class Reader {
     return text;
   }
 
-  /// A comment above the first row names the columns where it has as many words, and one of them is a column's.
+  /// A comment above the first row names the columns if it has as many words and one of them is a column's name.
   void consider_comment(const std::string& text) {
     const std::vector<std::string> words = fields_of(text);
     const bool names = std::any_of(words.begin(), words.end(),

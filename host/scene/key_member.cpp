@@ -27,7 +27,7 @@ struct KeyUnit {
 constexpr KeyUnit kUnits[] = {
     {"ps", "_s", 1e12}, {"ns", "_s", 1e9}, {"urad", "_rad", 1e6}, {"mrad", "_rad", 1e3}, {"deg", "_rad", 0.0}};
 
-/// The row's unit where it is not that of its member, else null.
+/// The row's unit if the member has another; else null.
 const KeyUnit* unit_of(const KeyRow& row) {
   if (row.key.name == row.member) return nullptr;
   const auto unit =

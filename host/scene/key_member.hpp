@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a row of keys.def and the C++ type of its member make of each other: the kind of its values, and how the member
-// is read, worded and checked. keys.cpp binds the rows with it; nothing else includes it.
+// What follows for a key from its row in keys.def and from the C++ type of its member: the kind of its values, and how
+// the member is read, worded and checked. Only keys.cpp includes it, to bind the rows.
 #pragma once
 
 #include <fmt/format.h>
@@ -30,7 +30,7 @@ KeyRow parse_texts(const RowTexts& texts);
 /// Words of a row's values: "a|b".
 std::vector<std::string> words_of(const std::string& values);
 
-/// Complains where the member has another name than the key and no rule turns the key's unit into the member's.
+/// Complains if the member has another name than the key and no rule converts the key's unit to the member's.
 void check_unit_rule(const RowTexts& texts, const KeyRow& row);
 
 /// From the unit of a key to that of a member with a name of its own, and back.
@@ -68,7 +68,7 @@ void set_kind(const RowTexts& texts, KeyRow* row) {
   check_unit_rule(texts, *row);
 }
 
-/// The key, which is there, into its member.
+/// Reads the key, which must be there, into its member.
 template <class S, class T>
 void read_member(TomlTable& t, const KeyRow& row, T S::*member, S* s) {
   const std::string& name = row.key.name;
@@ -78,7 +78,7 @@ void read_member(TomlTable& t, const KeyRow& row, T S::*member, S* s) {
     s->*member = row.kind == KeyKind::direction ? t.direction(name) : t.vector(name);
   } else if constexpr (std::is_same_v<T, double>) {
     double value = *t.row_key(row.key);
-    // Of an angle without ends whole turns leave while they are exact.
+    // Whole turns of an unbounded angle are taken off while that is exact.
     if (row.unit == "deg" && std::isinf(row.key.high)) value = std::fmod(value, 360.0);
     s->*member = to_member(row, value);
   } else {
@@ -131,7 +131,7 @@ std::string member_fault(const KeyRow& row, T S::*member, const S& s) {
     if (row.kind == KeyKind::truth || static_cast<std::size_t>(s.*member) < row.choices.size()) return "";
     return fmt::format("expected one of {}", fmt::join(row.choices, ", "));
   } else {
-    // In the member's unit: rounding is monotonous, so what a file may give passes here, to the ends of the range.
+    // Compared in the member's unit. Rounding keeps order, so every value that a file may give passes here.
     TableKey key = row.key;
     key.low = to_member(row, key.low);
     key.high = to_member(row, key.high);

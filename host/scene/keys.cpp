@@ -36,7 +36,7 @@ void store(const RowTexts& texts, Key<S> key) {
   storage<S>().push_back(std::move(key));
 }
 
-/// KEY: what the row's texts and the member's type say.
+/// A KEY, from the row's texts and the member's type.
 template <class S, class T>
 void add_key(const RowTexts& texts, T S::*member) {
   Key<S> key;
@@ -44,7 +44,7 @@ void add_key(const RowTexts& texts, T S::*member) {
   set_kind<T>(texts, &key);
   const KeyRow row = key;
   const T start = S{}.*member;
-  // What the member starts with may stay, also outside the range: nothing is given.
+  // The member may keep what it starts with, even outside the range: that means "not given".
   const auto unset = [row, member, start](const S& s) { return !row.required && s.*member == start; };
   const bool none = !member_fault(row, member, S{}).empty() || member_text(row, member, S{}).empty();
   key.read = [row, member](TomlTable& t, S* s) { read_member(t, row, member, s); };
@@ -63,7 +63,7 @@ void add_key(const RowTexts& texts, T S::*member) {
   store(texts, std::move(key));
 }
 
-/// FORM.
+/// A FORM.
 template <class S>
 void add_form(const RowTexts& texts, const KeyForm<S>& form) {
   Key<S> key;
@@ -104,7 +104,7 @@ void bind_once() {
   (void)bound;
 }
 
-/// Which of the ways of a section this one is.
+/// The way that this section is of: laser or sun, spin or table.
 template <class S>
 std::string way_of(const S&) {
   return "";
@@ -157,7 +157,7 @@ std::vector<KeyRow> key_rows(const std::string& section) {
 
 template <class S>
 void read_keys(TomlTable& t, S* s) {
-  // A misspelt key is the likelier fault than a missing one: those first.
+  // A misspelt key is likelier than a missing one, so it is told first.
   for (const Key<S>& key : keys<S>()) t.know({key.key.name});
   t.finish();
   for (const Key<S>& key : keys<S>()) {

@@ -16,7 +16,7 @@
 namespace clray {
 namespace {
 
-/// A spectrum whose every value the key accepts.
+/// Checks that the key accepts every value of a spectrum.
 Spectrum key_spectrum(const TableKey& key, const std::string& file) {
   std::vector<std::string> names{"value", key.name};
   for (const char* word : {"reflectance", "albedo"}) {
@@ -32,7 +32,7 @@ Spectrum key_spectrum(const TableKey& key, const std::string& file) {
   return spectrum;
 }
 
-/// Sets a key to a number, dropping a spectrum inherited from a base, or the other way round.
+/// Sets a key to a number and drops a spectrum that it had from a base, or the other way round.
 void set_number(Material* m, const std::string& key, double value) {
   m->parameters[key] = value;
   m->spectra.erase(key);
@@ -81,7 +81,7 @@ class NameIndex {
     return there >= 0 ? static_cast<std::uint32_t>(there) : add(std::move(material));
   }
 
-  /// A mesh file's own material: shared where an equal one is there, renamed where a different one has its name.
+  /// Adds a mesh file's own material. An equal one is shared; if a different one has its name, it is renamed.
   std::uint32_t add_from_file(Material material) {
     const int there = find(material.name);
     if (there < 0) return add(std::move(material));

@@ -11,14 +11,14 @@
 
 namespace clray {
 
-/// [[material]], or one of a [[variant]]. With `base` (the scene's material of that name) a table without `model`
-/// keeps what it does not give.
+/// Reads a [[material]], or one of a [[variant]]. A table without `model` starts from `base`, the scene's material of
+/// that name, and changes what it gives.
 Material read_material(TomlTable& table, const Material* base = nullptr);
 
 /// "model key=value …" of --material. Throws Error(usage).
 Material parse_material(const std::string& text);
 
-/// Lambert, rho = 0.5: where nothing speaks.
+/// Lambert, rho = 0.5: the surface of a part that nobody described.
 Material default_material();
 
 /// Index of a material by name, or -1.

@@ -54,13 +54,13 @@ bool convex_along(const OpenMeshT& mesh, OpenMesh::EdgeHandle edge) {
   const Plane b = plane_of(mesh, mesh.halfedge_handle(mesh.face_handle(back)));
   const double height = a.beyond(opposite(back));
   if (height > 0.0 || b.beyond(opposite(half)) > 0.0) return false;
-  // Folded flat onto itself: the far vertex is level but on the same side of the edge.
+  // The two triangles are folded onto each other: the far vertex is in the plane, on the same side of the edge.
   return height != 0.0 || v3_dot(a.normal, b.normal) > 0.0;
 }
 
-// Whether no neighbour lies farther along a direction that no plane of a model is likely to be square to. A closed
-// surface that is convex along every edge has as many summits as its normals cover the sphere times: one if it is
-// convex, two or more if it winds round itself like the walls over a star.
+// Whether a vertex is a summit: no neighbour lies farther along a direction that is square to no plane of a model. A
+// closed surface that is convex along every edge has one summit if it is convex, and more if it winds round itself like
+// the walls over a star: as many as the times that its normals cover the sphere.
 bool is_summit(const OpenMeshT& mesh, OpenMesh::VertexHandle vertex) {
   const auto height = [&](OpenMesh::VertexHandle v) {
     const OpenMeshT::Point& p = mesh.point(v);
@@ -109,7 +109,7 @@ bool convex_triangles(const std::vector<double>& triangles) {
   const auto plane = [&](std::size_t t) { return Plane(points[3 * t], points[3 * t + 1], points[3 * t + 2]); };
   const Plane first = plane(0);
   if (std::all_of(points.begin(), points.end(), [&](const Vec3& x) { return first.beyond(x) == 0.0; })) return true;
-  // Of a convex body no point lies before a face, which few faces of another body pass.
+  // No point of a convex body lies in front of a face. A few faces show that most other bodies are not convex.
   for (std::size_t k = 0; k < kSamples; ++k) {
     const Plane sample = plane(k * count / kSamples);
     const vec3 n = sample.normal;

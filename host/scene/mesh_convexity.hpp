@@ -11,8 +11,8 @@ namespace clray {
 
 /// `triangles`: nine numbers each. True if they lie in one plane, or form one closed, consistently wound surface that
 /// is convex along every edge and has one summit (closed surfaces convex in every place are convex: van Heijenoort
-/// 1952). False also where it cannot tell: more than 2·10⁶ triangles. Where a point lies before one of a few faces,
-/// that is told without building anything.
+/// 1952). False also if it cannot tell: with more than 2·10⁶ triangles. A few faces are tried first, since a point in
+/// front of one of them settles the question without building anything.
 bool convex_triangles(const std::vector<double>& triangles);
 
 /// Fills `closed` and `convex` of the parts; `part_of` gives the part of each face of the half-edge mesh.

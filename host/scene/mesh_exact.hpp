@@ -14,7 +14,7 @@ int side_of_plane(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 /// Sign of the component `axis` of (b − a) × (c − a).
 int turn_sign(const Vec3& a, const Vec3& b, const Vec3& c, int axis);
 
-/// An axis along which a triangle has an area, the one along which it is largest but for rounding; -1 exactly where its
+/// The axis along which the projected area of a triangle is largest (but for rounding) and not zero. -1 exactly if its
 /// corners lie on one line.
 int area_axis(const Vec3& a, const Vec3& b, const Vec3& c);
 

@@ -115,7 +115,7 @@ class Builder {
     }
   }
 
-  // A directed edge has room for one face: of those that want it the first takes it, unless it is refused itself.
+  // A directed edge has room for one face. The first face that wants it gets it, unless that face is itself refused.
   void refuse() {
     std::vector<std::uint32_t> contested;  // faces
     each_edge([&](std::uint32_t i, std::uint32_t end) {
@@ -157,7 +157,7 @@ class Builder {
     start_ = {};
   }
 
-  // The faces round a point make one vertex for each set of them that hangs together by edges there.
+  // The faces at a point are grouped by the edges that they share there. Each group has a vertex of its own.
   void make_vertices() {
     handle_.assign(3 * faces_.size(), kNone);
     std::vector<std::uint32_t> made(first_.size(), kNone);
@@ -198,7 +198,7 @@ class Builder {
         mesh.set_halfedge_handle(vertex_of(s), half[s]);
       }
     }
-    // A vertex on a boundary knows its outgoing half-edge on the outside; those follow each other round the hole.
+    // A vertex on a boundary keeps its outgoing half-edge of the hole. These half-edges follow each other round it.
     for (std::uint32_t s = 0; s < count; ++s) {
       if (twin_[s] == kNone) mesh.set_halfedge_handle(vertex_of(next_side(s)), mesh.opposite_halfedge_handle(half[s]));
     }

@@ -13,7 +13,7 @@
 
 namespace clray {
 
-/// What a triangle belongs to besides its place. Neighbours of different labels are never merged.
+/// The material and component of a triangle. Neighbours with different labels are never merged.
 struct FaceLabel {
   std::uint32_t slot = 0;       ///< material slot
   std::uint32_t component = 0;  ///< of the scene
@@ -46,8 +46,8 @@ class HalfEdges {
   HalfEdges(const HalfEdges&) = delete;
   HalfEdges& operator=(const HalfEdges&) = delete;
 
-  /// Triangles that share a directed edge with one before them: they are here with vertices of their own, so that
-  /// nothing is lost; ascending.
+  /// Triangles that share a directed edge with an earlier one. They have vertices of their own here, so that none is
+  /// lost. Ascending.
   const std::vector<std::uint32_t>& refused() const;
   /// Triangles with two corners in one point, which are not here; ascending.
   const std::vector<std::uint32_t>& collapsed() const;

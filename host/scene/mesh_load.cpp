@@ -20,7 +20,7 @@ namespace clray {
 
 namespace {
 
-// Beyond this, areas and the fp32 boxes of the tracer would overflow.
+// Areas and the tracer's fp32 boxes would overflow beyond it.
 constexpr double kMaxCoordinate_m = 1.0e15;
 
 class OpenFile {
@@ -123,9 +123,9 @@ PolygonSoup read_soup(const std::string& path) {
   return soup;
 }
 
-// Twice the area of a triangle, and whether that is no more than its corners' rounding can make: no higher over its
-// longest edge than four units in the last place of its coordinates. Corners that lie on a line in decimal need not do
-// so once each is rounded to double.
+// Twice the area of a triangle, and whether rounding of its corners alone could make it: the height over the longest
+// edge is at most four units in the last place of the coordinates. Corners that lie on one line in decimal need not do
+// so after rounding to double.
 double twice_area(const Vec3& a, const Vec3& b, const Vec3& c, bool& degenerate) {
   const vec3 u = v3(b.x - a.x, b.y - a.y, b.z - a.z), v = v3(c.x - a.x, c.y - a.y, c.z - a.z);
   const double twice = v3_length(v3_cross(u, v));

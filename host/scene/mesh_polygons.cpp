@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Merges neighbours in exactly one plane into polygons and walks round them. Two triangles on one edge lie in one plane
-// where the four corners do; that is exact, so it carries over from neighbour to neighbour.
+// Merges neighbours that lie exactly in one plane into polygons, and walks round these. Two triangles with a common
+// edge lie in one plane if their four corners do. The test is exact, so it holds from neighbour to neighbour.
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -64,7 +64,7 @@ class Merger {
     const Corners p = corners(a), q = corners(b);
     const Vec3 far = to_vec3(mesh_.point(mesh_.to_vertex_handle(mesh_.next_halfedge_handle(back))));
     if (side_of_plane(p[0], p[1], p[2], far) != 0) return false;
-    // Both look to one side, or else one is folded onto the other.
+    // Both look to the same side; otherwise one is folded onto the other.
     return turn_sign(p[0], p[1], p[2], axis_[at(a)]) == turn_sign(q[0], q[1], q[2], axis_[at(a)]);
   }
 

@@ -18,7 +18,7 @@ namespace clray {
   throw Error(ErrorCode::input, message, line ? path + ":" + std::to_string(line) : path);
 }
 
-/// One kind of thing that a file may hold and that is read with a warning: the first of them, and how many there are.
+/// Counts faults of one kind that are read with a warning, and remembers the first.
 struct Tally {
   std::uint64_t count = 0;
   std::uint64_t line = 0;  ///< of the first, 0 where the file has no lines

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What HalfEdges holds: an OpenMesh mesh and what it is told beside. Only for the files that answer HalfEdges'
-// questions.
+// What HalfEdges holds: an OpenMesh mesh and what else is known of its triangles. Only the files that implement
+// HalfEdges include it.
 #pragma once
 
 #include "scene/mesh_half_edges.hpp"

@@ -21,7 +21,7 @@ bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
 
-// from_chars tells "out of range" alike for 1e400 and 1e-400; the second is an honest zero.
+// from_chars says "out of range" for both 1e400 and 1e-400; the second counts as zero.
 bool underflows(std::string_view word) {
   std::int64_t exponent = 0, leading = 0;
   bool point = false, significant = false;

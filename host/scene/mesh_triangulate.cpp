@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Polygon triangulation: a fan for convex polygons, else ear clipping (Meisters 1975) in the coordinate plane that
-// Newell's normal favours. That projection is affine on the polygon's plane, so ears are ears in both, and it drops
-// a coordinate rather than rotating, so the points stay exact. Orientation by Kahan's difference of products.
+// Newell's normal favours. The projection onto it is affine on the polygon's plane, so an ear stays an ear. It drops a
+// coordinate instead of rotating, so the points stay exact. Orientations come from Kahan's difference of products.
 #include "scene/mesh_triangulate.hpp"
 
 #include <algorithm>
@@ -39,7 +39,7 @@ Vec3 newell_normal(const std::vector<Vec3>& p) {
   return normal;
 }
 
-// Counter-clockwise seen along the kept axes; false where the polygon spans no plane.
+// Makes the polygon counter-clockwise as seen along the kept axes. Returns false if it spans no plane.
 bool project(const std::vector<Vec3>& corners, std::vector<Point>& points) {
   const Vec3 n = newell_normal(corners);
   const Vec3 size(std::fabs(n.x), std::fabs(n.y), std::fabs(n.z));
@@ -52,7 +52,8 @@ bool project(const std::vector<Vec3>& corners, std::vector<Point>& points) {
   return true;
 }
 
-// Strictly convex and turning once: every turn to the left and the x of the edges changes direction twice.
+// Whether the polygon is strictly convex and goes round once: every turn is to the left, and the edges' x changes its
+// sign twice.
 bool is_convex(const std::vector<Point>& p) {
   const std::size_t n = p.size();
   int changes = 0, last = 0;
@@ -125,7 +126,7 @@ class EarClipper {
     return true;
   }
 
-  // Whether the outline leaves corner j, which lies on a, b or c, into the inside of the triangle.
+  // Whether the outline goes from corner j, which lies on a, b or c, into the triangle.
   bool enters(std::uint32_t j, const Point& a, const Point& b, const Point& c) const {
     const Point& q = p_[j];
     const Point corner[3] = {a, b, c};
@@ -171,7 +172,7 @@ Triangulation triangulate(const std::vector<Vec3>& corners, std::vector<std::arr
                                       std::to_string(kMaxConcaveCorners) + " were expected");
   }
   EarClipper(points).clip(triangles);
-  // A simple outline is covered once: no triangle turned over.
+  // A simple outline is covered once, so no triangle is turned over.
   for (std::size_t i = before; i < triangles.size(); ++i) {
     const auto& t = triangles[i];
     if (turn(points[t[0]], points[t[1]], points[t[2]]) >= 0.0) continue;

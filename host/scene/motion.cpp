@@ -15,7 +15,7 @@ namespace clray {
 namespace {
 
 constexpr double kTwoPi = 2.0 * CLRAY_PI;
-/// Relative tolerance within which a number of steps counts as whole: degrees to radians and back cost a few ulp.
+/// A number of steps counts as whole within this relative tolerance, as degrees to radians and back cost a few ulp.
 constexpr double kWhole = 0x1p-40;
 
 double dot(const Vec3& a, const Vec3& b) {
@@ -25,7 +25,7 @@ Vec3 cross(const Vec3& a, const Vec3& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-/// Takes `turns` into [-1/2, 1/2]; exact.
+/// Reduces `turns` to [-1/2, 1/2], exactly.
 double reduce(double turns) {
   const double part = std::fmod(turns, 1.0);
   return part > 0.5 ? part - 1.0 : part < -0.5 ? part + 1.0 : part;
@@ -134,7 +134,8 @@ std::vector<Orientation> spin_orientations(const Scene& scene) {
   const double step_turns = motion.step_rad / kTwoPi;
   const double steps_per_turn = std::floor(1.0 / step_turns + 0.5);
   const bool whole = std::fabs(steps_per_turn * step_turns - 1.0) <= kWhole;
-  // Whole turns of the start leave exactly, and so do whole turns of a step that divides one.
+  // Whole turns are taken off exactly: those of the start, and those of the steps where a turn has a whole number of
+  // them.
   const double first = turns_at(motion, motion.start_s);
   std::vector<Orientation> all;
   const std::size_t count = orientation_count(motion);
@@ -227,7 +228,7 @@ double hinge_angle(const Hinge& hinge, const Transform& transform, const Vec3& s
   const Vec3 across = normal - dot(normal, hinge.axis) * hinge.axis;
   const double sine = dot(target, cross(hinge.axis, normal));
   const double cosine = dot(target, across);
-  // Where the target or the normal lies along the axis every angle is as good: keep the fixed one.
+  // If the target or the normal lies along the axis, all angles are equally good, and the fixed one is kept.
   if (sine * sine + cosine * cosine < 1e-24) return hinge.angle_rad;
   return el_atan2(sine, cosine);
 }

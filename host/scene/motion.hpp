@@ -10,7 +10,7 @@
 
 namespace clray {
 
-/// Where a motion has too many steps to hold.
+/// The most steps that a motion may have.
 constexpr double kMaxOrientations = 1e7;
 
 /// First and last time of a motion, s: start_s and stop_s, or the ends of a table of which both are 0.

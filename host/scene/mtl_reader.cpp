@@ -62,7 +62,7 @@ class MtlReader {
     }
   }
 
-  // The entry goes to its place: that of an earlier one of the same name, if there is one.
+  // The entry takes the place of an earlier one of the same name, or a new place.
   void finish() {
     if (!current_) return;
     const auto [place, inserted] = place_of_.emplace(current_->name, entries_.size());
@@ -97,7 +97,7 @@ class MtlReader {
     }
   }
 
-  // The mean of a colour. A spectral file or CIE values are no share of light per colour.
+  // The mean of a colour. Spectral files and CIE values are refused, since they give no share of light per colour.
   void colour(std::string_view key, const MtlEntry& entry, std::optional<double>& mean) {
     const std::string what(key);
     const std::uint64_t line = text_.line();

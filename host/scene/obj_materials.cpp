@@ -32,7 +32,7 @@ class NameTable {
     }
   }
 
-  /// Index of the material that `name` means, or -1. What is cut loosely from both names is never compared:
+  /// Index of the material that `name` means, or -1. Two names are never compared after both were cut at a '#':
   /// "Material #27" is not "Material #25".
   int find(const std::string& name) const {
     int found = look_up({&whole_, &cut_}, name);
@@ -45,7 +45,7 @@ class NameTable {
     return found;
   }
 
-  /// What material `i` is called: without its comment where that tells it from the others.
+  /// The name of material `i`, without its comment if it is then still unlike the others.
   std::string name(std::size_t i) const {
     const std::string plain = without_comment(materials_[i].name);
     return look_up({&whole_, &cut_}, plain) == static_cast<int>(i) ? plain : materials_[i].name;
@@ -71,7 +71,7 @@ class NameTable {
 
   const std::vector<Material>& materials_;
   const Map& whole_;
-  Map cut_, loose_;  // without comments that a blank follows, and without all
+  Map cut_, loose_;  // names cut at a '#' before a blank, and at any '#'
 };
 
 std::string base_name(const std::string& name) {
@@ -79,7 +79,7 @@ std::string base_name(const std::string& name) {
   return slash == name.npos ? name : name.substr(slash + 1);
 }
 
-// `name` beside the OBJ file, all links followed; empty where that is no file inside the folder.
+// The path of `name` beside the OBJ file, with links followed; empty if it is no file inside the folder.
 fs::path file_inside(const fs::path& root, const std::string& name) {
   std::error_code error;
   if (name.empty() || name.find('\0') != name.npos) return {};
@@ -115,9 +115,9 @@ void ObjMaterials::libraries(std::string_view names, std::uint64_t line, std::ve
   }
 }
 
-// Reads a library inside the folder of the OBJ file: a mesh from elsewhere must not make us open other files. A path
-// that leads nowhere inside (absolute, of another system, with "..") falls back to its last part. False if none is
-// there.
+// Reads a library inside the folder of the OBJ file. A mesh that came from elsewhere must not make us open other files,
+// so of a path that leads outside (absolute, of another system, with "..") only the last part is tried. Returns false
+// if there is no such file.
 bool ObjMaterials::library(const std::string& name, std::uint64_t line, std::vector<std::string>& warnings) {
   const fs::path folder = fs::path(path_).parent_path();
   std::error_code error;
@@ -200,14 +200,14 @@ void ObjMaterials::finish(PolygonSoup& soup) {
   }
   for (std::uint32_t& s : soup.face_slot) s = place[s];
   warn_of_unknown(unknown, soup.warnings);
-  std::vector<std::string> called;  // first all of them: the table looks at the names as written
+  std::vector<std::string> called;  // all of them before any changes, since the table looks at names as written
   for (std::size_t i = 0; i < materials_.size(); ++i) called.push_back(names.name(i));
   for (std::size_t i = 0; i < materials_.size(); ++i) materials_[i].name = std::move(called[i]);
   soup.file_materials = std::move(materials_);
 }
 
 void ObjMaterials::warn_of_unknown(const std::vector<Slot>& unknown, std::vector<std::string>& warnings) const {
-  // Where no library could be read at all, its own warning says so once.
+  // If no library could be read at all, a warning has already said so.
   const bool no_library = materials_.empty() && any_library_;
   std::size_t count = 0;
   Tally rest;

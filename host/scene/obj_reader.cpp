@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // OBJ reader: vertices, polygons (v, v/vt, v//vn, v/vt/vn, negative indices), usemtl and mtllib. Normals, texture
-// coordinates, groups and smoothing change no reflection here: their indices are checked and they are left out.
+// coordinates, groups and smoothing change no reflection here; their indices are checked, then they are left out.
 // Source: Wavefront, Advanced Visualizer manual, appendix B1 (OBJ 3.0). Coordinates in the file's unit.
 #include <array>
 #include <charconv>
@@ -41,7 +41,7 @@ class ObjReader {
   PolygonSoup read() {
     while (text_.next_filled_line()) {
       statement(text_.word());
-      while (text_.more_on_line()) text_.word();  // what is left out may go on over continued lines
+      while (text_.more_on_line()) text_.word();  // a statement that is left out may have continued lines
       text_.next_line();
     }
     finish();
@@ -76,7 +76,7 @@ class ObjReader {
     v.x = text_.number("x of a vertex");
     v.y = text_.number("y of a vertex");
     v.z = text_.number("z of a vertex");
-    // w, or the r g b that scanners append, or both.
+    // Then w, or the r g b that scanners write, or both.
     for (int extra = 0; text_.more_on_line(); ++extra) {
       if (extra == 4) text_.fail("a vertex with more than seven values; x y z [w] [r g b] was expected");
       text_.number("w or a colour of a vertex");
@@ -86,7 +86,7 @@ class ObjReader {
     ++count_[kVertex];
   }
 
-  // The number that one part of a corner gives; what is beyond 64 bits becomes the farthest such number.
+  // The number in one part of a corner. A number beyond 64 bits becomes the largest or the smallest of 64 bits.
   std::int64_t part_number(std::string_view part, std::string_view corner) {
     std::int64_t value = 0;
     const char* p = part.data();
@@ -100,7 +100,7 @@ class ObjReader {
     return value;
   }
 
-  // A vertex index made absolute from 0. A number not yet reached is looked at again at the end of the file.
+  // Turns a vertex index into an absolute one from 0. An index ahead of the file's place is checked at its end.
   std::uint64_t vertex_index(std::string_view part, std::string_view corner) {
     const std::int64_t value = part_number(part, corner);
     const std::uint64_t count = count_[kVertex];
@@ -120,7 +120,7 @@ class ObjReader {
     return absolute;
   }
 
-  // Texture coordinates and normals are not used: an index that leads nowhere is only worth a warning.
+  // Texture coordinates and normals are not used, so an index without a target is only worth a warning.
   void unused_index(std::string_view part, std::string_view corner, Field field) {
     if (part.empty()) return;
     const std::int64_t value = part_number(part, corner);
@@ -174,7 +174,7 @@ class ObjReader {
     const std::int64_t greatest = greatest_[field].index;
     if (greatest > static_cast<std::int64_t>(count_[field])) tally.add(greatest_[field].line, std::to_string(greatest));
     if (tally.count == 0) return;
-    tally.count = 1;  // only the greatest of those beyond is known
+    tally.count = 1;  // of the indices beyond the end only the greatest is known
     tally.warn(path_,
                std::string(kFieldName[field]) + " index " + quote_word(tally.first) +
                    " leads nowhere, the file holds " + std::to_string(count_[field]) + "; they are not used",

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::array<const char*, 3> kAxes = {"x of a vertex", "y of a vertex", "z of a vertex"};
 
-// [ST][C][N]OFF in any case: what the letters before OFF announce stands after the numbers that count. The first
+// [ST][C][N]OFF, in any case. What the letters before OFF announce stands behind the coordinates of a vertex. The first
 // count may follow without a blank, as in "OFF4 1 0".
 void read_magic(TextCursor& text) {
   if (!text.next_filled_line()) text.fail("no data; an OFF file was expected");
@@ -71,7 +71,7 @@ PolygonSoup read_off(const std::string& path, const std::string& content) {
   read_magic(text);
   const auto vertices = static_cast<std::uint64_t>(text.integer("the number of vertices", 0, INT64_MAX));
   const auto faces = static_cast<std::uint64_t>(text.integer("the number of faces", 0, INT64_MAX));
-  // The least that a vertex ("0 0 0") and a face ("0") take, each with its line end.
+  // The fewest bytes of a vertex ("0 0 0") and of a face ("0"), each with its line end.
   const std::uint64_t body = content.size() - text.offset() + 1;
   if (vertices > body / 6 || faces > body / 2) {
     text.fail("the header claims " + std::to_string(vertices) + " vertices and " + std::to_string(faces) +

@@ -86,7 +86,7 @@ class PlyHeader {
     } else if (key == "property") {
       read_property();
     } else if (key != "comment" && key != "obj_info") {
-      // Some writers forget the word "comment". A misspelt keyword is another matter: the data would be misread.
+      // Some writers forget the word "comment". A misspelt keyword is refused, because the data would be misread.
       const std::string hint = text::did_you_mean(key, {"format", "element", "property", "end_header"});
       if (!hint.empty()) text_.fail(quote_word(key) + " is no PLY header line" + hint + " A PLY header was expected");
       strange.add(text_.line(), key);
@@ -135,7 +135,7 @@ class PlyHeader {
   bool format_ = false;
 };
 
-/// Reads or steps over one value after the other, text or binary.
+/// Reads or skips one value after the other, in text or binary.
 class PlyBody {
  public:
   PlyBody(TextCursor& text, const std::string& content, Encoding encoding, const std::string& path)
@@ -258,7 +258,7 @@ void check_layout(const PlyHeader& header, const std::string& path) {
   }
 }
 
-// The least a file must still hold for the header to be true: in text a digit and a separator per value.
+// The fewest bytes that the header promises: in text, a digit and a separator per value.
 void check_size(const PlyHeader& header, std::uint64_t body, const std::string& path) {
   const bool text = header.encoding == Encoding::text;
   for (const PlyElement& element : header.elements) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// check_result(): the parts of a result fit each other and the scene. What trace() returns always does; a result that
-// a host application made or changed may not, and its writers rely on it. Errors name the member by its path.
+// check_result(): whether the parts of a result fit each other and the scene. Those of trace() always do. A host
+// application may have made or changed a result, and writers rely on the fit. Errors name the member by its path.
 #include <fmt/format.h>
 
 #include <cmath>

@@ -43,8 +43,8 @@ Vec3 option_direction(const Vec3& v, const std::string& option) {
   return {u.x / length, u.y / length, u.z / length};
 }
 
-/// A bare mesh of which only pictures are asked is lit by the Sun from over the viewer's left shoulder: light that
-/// comes from the viewer's own eye, as a laser station's does, shows no relief.
+/// Lights a bare mesh by the Sun from over the viewer's left shoulder if only pictures are asked for. Light from the
+/// viewer's own eye, such as a laser station's, shows no relief.
 void light_for_pictures(const SceneOptions& options, Scene* scene) {
   const bool pictures = std::all_of(scene->detectors.begin(), scene->detectors.end(),
                                     [](const DetectorSpec& d) { return table_row("detector", d.kind).pixel; });
@@ -60,7 +60,7 @@ void light_for_pictures(const SceneOptions& options, Scene* scene) {
   scene->source.direction = glm::normalize(o - 0.35 * right + 0.45 * glm::cross(o, right));
 }
 
-/// The kinds asked for; a kind that the file has too keeps the file's options.
+/// The detectors of the kinds asked for. A kind that the scene file has keeps the file's options.
 void apply_detectors(const SceneOptions& options, Scene* scene) {
   if (!options.detectors.empty()) {
     std::vector<DetectorSpec> chosen;
@@ -99,7 +99,7 @@ void apply_detectors(const SceneOptions& options, Scene* scene) {
   if (!used) throw Error(ErrorCode::usage, "needs a detector with bins, such as delay", "--bins");
 }
 
-/// One observer in the given direction, or at the source, who keeps what all observers of the scene share: of one, all.
+/// One observer in the given direction, or at the source. It keeps the keys in which all observers of the scene agree.
 void replace_observers(const SceneOptions& options, Scene* scene) {
   const std::vector<Observer>& before = scene->observers;
   Observer one = before.empty() ? Observer{} : before.front();

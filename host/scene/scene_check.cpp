@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// check_scene(): what load_scene() demands of a file, demanded of a scene built by hand. Errors name the member by
-// its path ("components[2].radius"), for want of a line. The faults of several values taken together are shared.
+// check_scene(): demands of a scene built by hand what load_scene() demands of a file. Errors name the member by its
+// path ("components[2].radius"), since there is no line. Rules about several values are shared by both.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ namespace {
   throw Error(ErrorCode::input, message, where);
 }
 
-/// Distance over size at which positions in double precision still have five digits for a shape.
+/// At this distance over size, positions in double precision still have five digits for a shape.
 constexpr double kFarthest = 1e11;
 
 double largest(const Vec3& v) {
@@ -99,7 +99,7 @@ void check_table(const std::string& where, const BrdfTable& t) {
       fail(where, "expected increasing angles");
     }
   }
-  // In steps: the product of three sizes may exceed what a size holds.
+  // In steps, because the product of three sizes may overflow.
   const std::size_t rows = t.value.size() / t.phi_rad.size();
   if (t.value.size() % t.phi_rad.size() != 0 || rows % t.theta_o_rad.size() != 0 ||
       rows / t.theta_o_rad.size() != t.theta_i_rad.size()) {
@@ -187,7 +187,8 @@ void check_trace(const TraceOptions& o) {
   check_number("trace.work_group_size", o.work_group_size, {1.0, 1024.0, true, true});
 }
 
-/// Names that key results must differ, and one alone may be empty. A detector without a name has that of its kind.
+/// Checks names that are keys of results: they must differ. If there is only one, it may be empty. A detector without a
+/// name has that of its kind.
 template <typename List>
 void check_names(const std::string& where, const List& list) {
   std::set<std::string> names;
@@ -210,7 +211,7 @@ std::string shape_fault(const Component& c) {
   double radius = 0.0, inner = -1.0;
   for (std::size_t i = 0; i < values.size(); ++i) {
     const double length = values[i] * c.transform.scale;
-    const bool zero = values[i] == 0.0;  // where a key's range allows it: a cone's tip
+    const bool zero = values[i] == 0.0;  // allowed by some keys' ranges, such as a cone's tip
     if (!row.keys[i].is_switch && !zero && !(length >= kShortest_m && length <= kLongest_m)) {
       return fmt::format("{}: expected a length from {:g} to {:g} m, found {}", row.keys[i].name, kShortest_m,
                          kLongest_m, length);

@@ -100,7 +100,7 @@ BrdfTable read_brdf_table(const std::string& file) {
   }
   const std::vector<double> axes[3] = {axis_of(t, 0), axis_of(t, 1), axis_of(t, 2)};
   const std::size_t cells = axes[0].size() * axes[1].size() * axes[2].size();
-  if (cells > 8 * t.rows.size() + 1000) {  // far from full: say so rather than make room for it
+  if (cells > 8 * t.rows.size() + 1000) {  // far from full: refuse before allocating it
     fail(file, 0,
          fmt::format("{} rows are no full grid of {} x {} x {} angles", t.rows.size(), axes[0].size(), axes[1].size(),
                      axes[2].size()));

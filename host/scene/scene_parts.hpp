@@ -26,21 +26,21 @@ void read_trace(TomlTable& root, Scene* scene);
 /// What is wrong with a shape's parameters (each a length, or a switch) taken together, or "".
 std::string shape_fault(const Component& component);
 
-/// What is wrong with a component's place, or "": so far out that positions have no digits left for its shape.
+/// What is wrong with a component's place, or "". It may not be so far out that no digits are left for its shape.
 std::string distance_fault(const Component& component);
 
 /// What is wrong with a detector's parameters taken together, or "".
 std::string detector_fault(const DetectorSpec& detector);
 
-/// What is wrong with a source under the scene's detectors (bands that it has no light in), or "".
+/// What is wrong with a source for the scene's detectors, or "": bands in which it has no light.
 std::string source_fault(const Scene& scene);
 
 /// Throws Error(input) where the station's range is not known throughout the motion (at time 0 without one), where an
 /// observer at the source has another range than the station there, or where the shots of a session are too many.
 void check_ranging(const Scene& scene);
 
-/// What a person should know of the station before the scene is traced: why there will be no session, a target below
-/// the horizon, a calendar that nobody gave. Of a scene that check_ranging() accepts.
+/// What a person should know of the station before the scene is traced: why there will be no session, that the target
+/// is below the horizon, that no calendar was given. For a scene that check_ranging() accepts.
 std::vector<std::string> ranging_warnings(const Scene& scene);
 
 /// The station's ranges during the motion, for a person; empty where they are fixed.

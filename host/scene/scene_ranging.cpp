@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a [station] asks of the rest of its scene: a range at every time of the motion, one range for one place; and
-// what a person should know before a session is traced. Reads the prediction, so that --check finds what is wrong with
-// it.
+// Rules between a [station] and the rest of its scene: there is a range at every time of the motion, and one place has
+// one range. Also what a person should know before a session is traced. It reads the prediction, so that --check finds
+// its faults.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -29,7 +29,7 @@ std::pair<double, double> span_of(const Scene& scene) {
   return scene.motion ? motion_span(*scene.motion) : std::pair{0.0, 0.0};
 }
 
-/// A place has one range: an observer at the laser's station is where the station is.
+/// An observer at the laser's station must have the station's range.
 void check_places(const Scene& scene, const RangeModel& ranges) {
   if (scene.source.kind != Source::Kind::laser) return;
   for (std::size_t i = 0; i < scene.observers.size(); ++i) {
@@ -62,7 +62,7 @@ std::string session_gap(const Scene& scene) {
   return "no observer is at the source" + near;
 }
 
-/// The lowest that the target stands during the motion, if that is below the horizon.
+/// The lowest elevation of the target during the motion, if it is below the horizon.
 std::string below_horizon(const Scene& scene, const RangeModel& ranges) {
   constexpr int kSteps = 256;
   const auto [start, stop] = span_of(scene);

@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Whole turns leave while they are exact.
+/// To radians. Whole turns are taken off before, while that is exact.
 double radians(double degrees) {
   return std::fmod(degrees, 360.0) / 180.0 * CLRAY_PI;
 }
@@ -65,7 +65,7 @@ std::vector<std::string> material_names(const Scene& scene) {
   return names;
 }
 
-/// A material's name that must be that of a [[material]].
+/// A material's name, which a [[material]] must have.
 std::string known_material(TomlTable& t, const std::string& key, const Scene& scene) {
   const std::string name = t.text(key);
   if (find_material(scene, name) < 0) {
@@ -141,7 +141,7 @@ void read_shape(TomlTable& t, Component* c) {
   if (!fault.empty()) throw Error(ErrorCode::input, "component." + fault, t.place());
 }
 
-/// Meshes by their canonical path, so that instances share one.
+/// Meshes by their canonical path, so that components that name one file share it.
 using MeshCache = std::map<std::string, std::shared_ptr<const Mesh>>;
 
 void read_mesh(TomlTable& t, double unit_m, MeshCache* cache, Scene* scene, Component* c) {
@@ -175,7 +175,7 @@ void read_component_materials(TomlTable& t, std::size_t defined, Scene* scene, C
   }
 }
 
-/// The name given, or one from the shape that no other component has.
+/// The given name, or one made of the shape that no other component has.
 std::string component_name(TomlTable& t, const Scene& scene, const std::string& shape) {
   const auto taken = [&](const std::string& name) {
     return std::any_of(scene.components.begin(), scene.components.end(),

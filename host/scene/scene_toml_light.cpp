@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The sections of a scene file about light and measurement: source, observers, motion, station, detectors, trace. Their
-// keys are the rows of keys.def; here stands what several of them have to do with each other.
+// keys are the rows of keys.def. Rules about several keys of a section stand here.
 #include "clray/error.hpp"
 #include "scene/keys.hpp"
 #include "scene/motion.hpp"

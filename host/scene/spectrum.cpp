@@ -2,8 +2,8 @@
 // Spectra and sources. A black body's share in a band is the integral of x³/(eˣ−1) over x = hc/(λkT), divided by
 // π⁴/15 (Planck 1901), by composite Gauss-Legendre quadrature of five points on panels of at most 0.25 in x: its
 // error there is below 1e-18 of the integrand, and narrow bands do not suffer the cancellation of a difference of
-// two tails. Products of tables (reflectance, light, filter) are integrated by the same rule between the points of all
-// of them, where they are polynomials: exactly. Constants are the SI's of 2019.
+// two tails. Products of tables (reflectance, light, filter) are integrated by the same rule, piece by piece between
+// the points of all of them. There they are polynomials, so the rule is exact.
 #include "scene/spectrum.hpp"
 
 #include <fmt/format.h>
@@ -91,7 +91,7 @@ double band_integral(Weight weight, const Spectrum* points, double step_nm, cons
   for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
     if (!(ends[i] < ends[i + 1])) continue;
     const auto passed = [&](double w) { return weight(w) * source_spectral_W_m2_nm(source, w) * response_at(band, w); };
-    // Products of three lines are exact in one panel; a black body wants steps that are small in x and in ln λ.
+    // One panel is exact for a product of three lines. A black body needs panels that are small in x and in ln λ.
     double panels = std::ceil((ends[i + 1] - ends[i]) / step_nm);
     if (!is_table(source)) {
       const double x = planck_x(ends[i], temperature_of(source)), relative = 1.0 - ends[i] / ends[i + 1];

@@ -2,7 +2,7 @@
 // Quantities against wavelength: values and means of tables, the light of a source within a band, the bands of a
 // scene, and the zero point of magnitudes. Wavelengths in nm, irradiance in W/m².
 // Beyond the ends of its table a surface's key is constant (spectrum_at); a source sends nothing and a filter passes
-// nothing (spectrum_inside). Whatever weighs by light goes through source_spectral_W_m2_nm() and response_at().
+// nothing (spectrum_inside). Every weight by light is made of source_spectral_W_m2_nm() and response_at().
 #pragma once
 
 #include <functional>

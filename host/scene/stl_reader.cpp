@@ -101,7 +101,7 @@ std::string lower(std::string_view word) {
   return text;
 }
 
-// The next keyword in small letters, those of two words as one: "endsolid", "outerloop"; empty at the end of the file.
+// The next keyword, in small letters; two words make one ("endsolid", "outerloop"). Empty at the end of the file.
 std::string keyword(TextCursor& text) {
   if (!text.next_filled_line()) return {};
   std::string word = lower(text.word());
@@ -159,7 +159,7 @@ bool begins_with_solid(const std::string& content) {
 }  // namespace
 
 PolygonSoup read_stl(const std::string& path, const std::string& content) {
-  // By size first: many binary files begin with "solid" too.
+  // The size decides first, since many binary files begin with "solid" as well.
   const bool whole = content.size() >= kHeader && content.size() == kHeader + claimed_facets(content) * kFacet;
   const bool text = content.size() < kHeader || (begins_with_solid(content) && content.find('\0') == content.npos);
   return text && !whole ? read_text(path, content) : read_binary(path, content);

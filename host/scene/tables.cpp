@@ -62,7 +62,7 @@ bool to_number(const std::string& text, double* value) {
   return read.ec == std::errc() && read.ptr == end && std::isfinite(*value);
 }
 
-/// The next word of `text` from `at`, which moves behind it.
+/// The next word of `text` from `at` on; moves `at` behind it.
 std::string next_word(const std::string& text, std::size_t* at) {
   const std::size_t begin = text.find_first_not_of(' ', *at);
   if (begin == std::string::npos) {

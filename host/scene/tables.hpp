@@ -24,9 +24,9 @@ struct TableKey {
 
 /// What the rows of a detector's sum belong to.
 enum class SumRows { view, lane, connection };
-/// How the numbers of a sum are scaled, and so merged: `greatest` by the greater, the others by adding.
+/// How the numbers of a sum are scaled and merged: `greatest` keeps the greater, the others add up.
 enum class SumScale { weight, unit, count, greatest };
-/// What a work-item keeps of a sum: nothing, a row, a row where that is few numbers, or the one number of its pixel.
+/// What a work-item keeps of a sum: nothing, a row, a row if it has few numbers, or the one number of its pixel.
 enum class SumKeep { nothing, row, small_row, number };
 
 /// One of a detector's sums, e.g. "bins connection bins+2 weight".
@@ -58,7 +58,7 @@ struct TableRow {
   std::string meaning;
 };
 
-/// Rows in the order of the file, which is the number kernels know them by. kind: "brdf", "shape", "detector".
+/// Rows in the order of the file; kernels know a row by its place. kind: "brdf", "shape", "detector".
 const std::vector<TableRow>& table(const std::string& kind);
 
 /// The value of a sum's width where `value_of` knows its names. Throws Error(bug) for an unknown one.

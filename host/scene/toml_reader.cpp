@@ -74,7 +74,7 @@ void TomlTable::unknown(const toml::key& key) const {
 }
 
 void TomlTable::missing(const std::string& key, const std::string& expected) const {
-  // A misspelt key is the likelier fault, and its own place the better one to name.
+  // A misspelt key is the likelier fault, and its place is the better one to name.
   for (const auto& [present, value] : *table_) {
     const std::string word(present.str());
     if (known_.count(word) == 0 && text::nearest(word, {key}) == key) unknown(present);
@@ -189,7 +189,7 @@ Vec3 TomlTable::vector(const std::string& key, std::optional<Vec3> fallback) {
 Vec3 TomlTable::direction(const std::string& key, std::optional<Vec3> fallback) {
   if (node(key) == nullptr && fallback) return *fallback;
   const Vec3 v = vector(key);
-  // Scaled by the largest part first, so that neither tiny nor huge vectors leave the range of squares.
+  // Scaled by the largest component first, so that squares of tiny and huge ones neither vanish nor overflow.
   const double largest = std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
   if (largest == 0.0) fail(key, "expected a direction, found the zero vector");
   const Vec3 u(v.x / largest, v.y / largest, v.z / largest);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Checks of single values; see value_checks.hpp. What is wrong is said with what was expected and what was found.
+// Checks of single values; see value_checks.hpp. A complaint says what was expected and what was found.
 #include "scene/value_checks.hpp"
 
 #include <fmt/format.h>
@@ -41,7 +41,7 @@ std::string unit_fault(const Vec3& v) {
   const std::string fault = vector_fault(v);
   if (!fault.empty()) return fault;
   const double square = v.x * v.x + v.y * v.y + v.z * v.z;
-  // A vector normalised in any sensible way is within a few ulp; 1e-12 allows for single steps of arithmetic after.
+  // Normalised vectors have length 1 to a few ulp; 1e-12 allows for some arithmetic after that.
   if (std::fabs(square - 1.0) <= 1e-12) return "";
   return fmt::format("expected a unit vector, found length {}", std::sqrt(square));
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Constants of mathematics and physics, each written once. Those of physics are exact in the SI of 2019; the Sun's are
-// the nominal ones of IAU 2015 Resolution B3 (its irradiance to the nearest W/m²). Kernels have shared/constants.h.
+// Constants of mathematics and physics, each written once. c, h and k are exact in the SI of 2019. The Sun's are the
+// nominal values of IAU 2015 Resolution B3. Kernels have shared/constants.h.
 #pragma once
 
 namespace clray::constants {

@@ -22,8 +22,8 @@ struct Estimate {
   double value = 0.0;
   double standard_error = 0.0;
   double low = 0.0, high = 0.0;  ///< 95 % Student-t interval
-  /// Of the squared standard error: 0.10 on average for 16 replicates of normal spread, at most 0.82, where one
-  /// replicate makes all the difference. NaN where there is no spread.
+  /// How well the squared standard error is known: 0.10 on average for 16 normal replicates, at most 0.82, when one
+  /// replicate differs from all others. NaN without any spread.
   double relative_variance_of_variance = 0.0;
 };
 
@@ -103,7 +103,7 @@ struct ImageResult {
   std::vector<double> standard_error_per_sr;  ///< same shape
 };
 
-/// A sum that a detector's row states with a unit, and nothing more: its numbers, each with its error.
+/// The numbers of a sum that a detector's row states with a unit, each with its error.
 struct TableResult {
   ResultKey key;
   std::string name;  ///< of the sum
@@ -136,7 +136,7 @@ struct ErrorPoint {
   double first_standard_error = std::numeric_limits<double>::quiet_NaN();  ///< of first_total; of |C|, along C
 };
 
-/// Failures, counted and never hidden; all are zero in a sound run.
+/// Failures are counted, never hidden. All are zero in a sound run.
 struct Diagnostics {
   std::uint64_t non_finite = 0, stack_overflow = 0, lost_rays = 0, accumulator_overflow = 0;
   double below_window_fraction = 0.0, above_window_fraction = 0.0, truncated_energy_fraction = 0.0;
@@ -159,9 +159,9 @@ struct Result {
   double target_percent = 0.0;  ///< 95 % half-width over the value that was asked for; 0: none
   /// That of the result, the largest over all totals; NaN where all are zero.
   double reached_percent = std::numeric_limits<double>::quiet_NaN();
-  /// What ended the tracing: "target", "zero" (all totals, so none can be reached), "rays" (as given), "max_rays",
-  /// "samples" (of a picture's search), "time limit" or "interrupt". Of several passes, of the first without the
-  /// target.
+  /// What ended the tracing: "target", "zero" (all totals are zero, so no target can be met), "rays" (as given),
+  /// "max_rays", "samples" (of a picture's search), "time limit" or "interrupt". If there were several passes, that of
+  /// the first that missed the target.
   std::string stopped_by;
   double extent_m = 0.0;  ///< longest side of the box around the body, axes of the body frame
   MeshReport mesh;        ///< all meshes together
@@ -177,14 +177,14 @@ struct Result {
   std::vector<SpectrometerResult> spectrometer;
   std::vector<PressureResult> pressure;
   std::vector<ImageResult> image;  ///< of rgb and hyperspectral detectors
-  std::vector<TableResult> table;  ///< of detectors that are no more than their sums
+  std::vector<TableResult> table;  ///< of detectors that have sums and no results of their own
 };
 
 /// Files that another part adds to a result, and its entry in the summary.
 struct MoreFiles {
   std::vector<std::string> names;         ///< written into the folder given
   std::string summary_key, summary_json;  ///< an entry for summary.json, as JSON text; empty for none
-  std::string text = {};                  ///< what of it a person wants to see first; empty for nothing
+  std::string text = {};                  ///< shown to a person at the end of a run; may be empty
 };
 
 /// How to write results.
