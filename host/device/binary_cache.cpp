@@ -73,7 +73,7 @@ std::optional<cl::Program> load_binary(const OpenedDevice& opened, const std::st
     program.build({opened.device}, flags.c_str());
     return program;
   } catch (const cl::Error&) {
-    return {};  // of another driver, perhaps: the source is at hand
+    return {};  // perhaps of another driver: the source will be built
   }
 }
 
@@ -96,7 +96,7 @@ void save_binary(const OpenedDevice& opened, const std::string& flags, const std
     file.write(reinterpret_cast<const char*>(binaries.front().data()),
                static_cast<std::streamsize>(binaries.front().size()));
     file.close();
-    if (file) fs::rename(temporary, path, error);  // whole or not at all, whoever else writes it
+    if (file) fs::rename(temporary, path, error);  // so it appears whole, even if others write it as well
     if (!file || error) fs::remove(temporary, error);
   } catch (const cl::Error&) {
     fs::remove(temporary, error);

@@ -11,7 +11,7 @@
 
 namespace clray {
 
-/// An uninitialised buffer of `count` elements (of one where count is 0: OpenCL knows no empty buffer).
+/// An uninitialised buffer of `count` elements, or of one if count is 0, as OpenCL knows no empty buffer.
 template <class T>
 cl::Buffer make_buffer(OpenedDevice& opened, std::size_t count, cl_mem_flags flags = CL_MEM_READ_WRITE) {
   return with_cl_errors(opened.info.name,

@@ -74,8 +74,8 @@ std::vector<FoundDevice> select(const std::vector<FoundDevice>& devices,
   return chosen;
 }
 
-/// Devices of that type, those that can compute in fp64 first; a device that is nothing else before one that claims
-/// to be CPU and GPU at once.
+/// Devices of that type. Those with fp64 come first; among equals, a device of this type alone comes before one that
+/// claims to be CPU and GPU at once.
 std::vector<FoundDevice> of_type(const std::vector<FoundDevice>& devices, cl_device_type type, bool also_both) {
   auto chosen = select(devices, [&](const FoundDevice& found) {
     return (found.type & type) != 0 && (also_both || (found.type & kCpuAndGpu) != kCpuAndGpu);
@@ -148,7 +148,7 @@ std::vector<FoundDevice> find_devices() {
       const std::string name = without_nul(platform.getInfo<CL_PLATFORM_NAME>());
       for (const auto& device : devices) all.push_back(describe(name, device));
     } catch (const cl::Error&) {
-      continue;  // a platform without devices, or one whose driver does not answer, is not there for us
+      continue;  // it has no devices, or its driver does not answer: it is skipped
     }
   }
   std::stable_sort(all.begin(), all.end(),
@@ -246,7 +246,7 @@ Device::Impl& Device::impl() {
 }
 
 DeviceUse::DeviceUse(Device& device) : impl_(device.impl()) {
-  // Only this thread can have put its own id there, so the answer cannot change meanwhile.
+  // Only this thread can put its own id there, so the answer cannot change meanwhile.
   if (impl_.user == std::this_thread::get_id()) {
     throw Error(ErrorCode::usage, "the device is busy with the call that this one comes from", device.info().name);
   }

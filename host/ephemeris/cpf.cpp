@@ -179,7 +179,7 @@ Vec3 position_at(const Prediction& p, double time_s) {
 
 double distance_at(const Prediction& p, const Vec3& station_m, double time_s) {
   double distance = glm::length(position_at(p, time_s) - station_m);
-  // Each round gains a factor v/c < 3e-5: four leave nothing of the light time's error.
+  // Each round reduces the error of the light time by v/c < 3e-5, so four rounds leave none.
   for (int round = 0; round < 4; ++round) {
     const double next = glm::length(position_at(p, time_s + distance / constants::kLightSpeed_m_s) - station_m);
     if (next == distance) break;

@@ -37,8 +37,8 @@ Prediction read_cpf(const std::string& path);
 Vec3 position_at(const Prediction& prediction, double time_s);
 
 /// One-way distance that a pulse fired at `time_s` travels until it meets the target, m; the light time is solved for.
-/// In the Earth-fixed frame the rotation of the Earth cancels between up- and downlink but for 5 um at 1000 km and
-/// 0.1 mm at 20000 km. The Shapiro delay (1.3 to 16 mm) is left out.
+/// In the Earth-fixed frame the Earth's rotation cancels between up- and downlink, except for 5 um at 1000 km and 0.1
+/// mm at 20000 km. The Shapiro delay (1.3 to 16 mm) is left out.
 double distance_at(const Prediction& prediction, const Vec3& station_m, double time_s);
 
 }  // namespace clray::ephemeris

@@ -30,7 +30,7 @@ struct Instant {
 Instant instant_of(double seconds);
 inline constexpr double kLatest_s = 1e12;
 
-/// So much later; `s` and `ps` of any sign.
+/// The time `s` seconds and `ps` picoseconds later; both may have any sign.
 Instant later(const Instant& instant, std::int64_t s, std::int64_t ps);
 
 /// Seconds from `a` to `b`.

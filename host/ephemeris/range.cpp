@@ -15,7 +15,7 @@ namespace clray::ephemeris {
 
 namespace {
 
-constexpr std::size_t kTablePoints = 4;   // a cubic through the four nearest points; all of them where there are fewer
+constexpr std::size_t kTablePoints = 4;   // of a cubic; a table with fewer points uses all of them
 constexpr double kFirstMjd = -2400000.5;  // the Julian Date 0: a time 0 of Julian seconds
 
 [[noreturn]] void refuse(const std::string& key, const std::string& what) {
@@ -37,7 +37,7 @@ void check_table(const std::vector<std::pair<double, double>>& table) {
   }
 }
 
-/// Seconds with as many digits as tell two of them apart.
+/// Seconds, with enough digits to tell any two times apart.
 std::string seconds_text(const Instant& time) {
   return fmt::format("{} s", static_cast<double>(time.s) + static_cast<double>(time.ps) * 1e-12);
 }

@@ -53,8 +53,8 @@ class RangeModel {
   Epoch zero_;
 };
 
-/// Distance from the body to an observer at `time`: the observer's own, else that of the station (`ranges`, or null);
-/// 0 where nobody says. An observer at a laser's station is where the station is.
+/// Distance from the body to an observer at `time`: the observer's own, else that of the station (`ranges`, or null),
+/// else 0. An observer at a laser's station has the station's range.
 double observer_range_m(const Observer& observer, const RangeModel* ranges, const Instant& time);
 
 }  // namespace clray::ephemeris

@@ -17,7 +17,7 @@ double lobe(double x, double centre, double left, double right) {
   return std::exp(-0.5 * t * t);
 }
 
-/// Columns of the RGB-to-XYZ matrix: each primary's xyz, scaled so that their sum is the white point.
+/// A column of the RGB-to-XYZ matrix, but for its scale: the XYZ of a primary with Y = 1.
 Vec3 xyz_of(double x, double y) {
   return {x / y, 1.0, (1.0 - x - y) / y};
 }
@@ -37,7 +37,7 @@ Vec3 colour_matching(double w) {
 }
 
 Vec3 band_colour(const Band& band, const Source& source) {
-  // Beyond these ends the fit's lobes are below 1e-9 of their peaks. They are 12 nm and wider.
+  // The fit's lobes are below 1e-9 of their peaks beyond these ends, and at least 12 nm wide.
   constexpr double kLow_nm = 330.0, kHigh_nm = 880.0, kStep_nm = 5.0;
   Band visible = band;
   visible.low_nm = std::max(band.low_nm, kLow_nm);
@@ -74,7 +74,7 @@ std::vector<Vec3> rgb_weights(const ImageResult& image, const Source& source) {
     weights.push_back(power * band_colour(image.bands[b], source));
     white += weights.back().y / constants::kPi;
   }
-  // Below a millionth of the eye's peak a band is not visible but the fit's tail.
+  // Below a millionth of the eye's peak there is only the tail of the fit, which is not visible light.
   double power = 0.0;
   for (const double p : image.band_source_W_m2) power += p;
   const bool visible = white * constants::kPi > 1e-6 * power && white > 0.0;

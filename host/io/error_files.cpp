@@ -11,7 +11,7 @@ namespace clray::io {
 
 namespace {
 
-/// True error of the first total at one point of the run; NaN where the run did not keep it.
+/// True error of the first total at one point of the run; NaN if the run did not keep the total.
 std::vector<double> true_errors(const Writer& writer) {
   std::vector<double> errors(writer.result.errors.size(), std::nan(""));
   if (!writer.reference || writer.result.errors.empty()) return errors;
@@ -41,7 +41,7 @@ void error_table(Writer& writer, const std::vector<double>& truth) {
   table.close();
 }
 
-/// Points that a logarithmic axis can show; returns the first, or a zero where there is none.
+/// Writes the points that a logarithmic axis can show. Returns the first, or zero if there is none.
 struct Place {
   double x = 0.0, error = 0.0;
 };
@@ -59,13 +59,13 @@ bool drawable(double error) {
   return std::isfinite(error) && error > 0.0;
 }
 
-/// "[low:high]" around the values with some air, in a logarithmic sense; at least half a decade.
+/// "[low:high]" for a logarithmic axis: around the values with a margin, at least half a decade wide.
 std::string log_range(double low, double high) {
   const double air = high / low < 3.0 ? 2.0 : 1.4;
   return "[" + number(low / air) + ":" + number(high * air) + "]";
 }
 
-/// Labels at 1, 2, 5 times powers of ten: gnuplot's own would leave an axis of less than a decade bare.
+/// Labels at 1, 2 and 5 times powers of ten, since gnuplot's own leave an axis of less than a decade bare.
 std::string log_tics(const std::string& axis, double low, double high) {
   std::string tics;
   const int first = static_cast<int>(std::floor(std::log10(low))) - 1,

@@ -125,13 +125,13 @@ std::string frame_stem(const std::string& stem, const Group& group, std::size_t 
   return stem + "-" + std::string(digits.size() < 4 ? 4 - digits.size() : 0, '0') + digits;
 }
 
-/// Where the picture lies, for a person: its pixels and its centre.
+/// The picture's pixel size and centre, in words.
 std::string framing(const ImageResult& image) {
   return "Pixel " + number(image.pixel_m) + " m; centre " + number(image.centre_right_m) + " m to the right and " +
          number(image.centre_up_m) + " m above the body's reference point";
 }
 
-/// `value` with the leading zeros that make names in alphabetical order those of 0 … count − 1 in theirs.
+/// `value` with leading zeros, so that names of 0 … count − 1 sort in the order of the numbers.
 std::string padded(std::size_t value, std::size_t count) {
   const std::string digits = std::to_string(value);
   return std::string(std::to_string(count - 1).size() - digits.size(), '0') + digits;
@@ -145,8 +145,8 @@ void exr_file(Writer& writer, const ImageResult& image, const Linear& linear, co
   const std::size_t pixels = pixel_count(image);
   for (std::size_t b = 0; b < image.bands.size(); ++b) {
     const auto begin = image.radiance_per_sr.begin() + static_cast<std::ptrdiff_t>(b * pixels);
-    // A dot would nest layers, and OpenEXR limits names to 255 bytes: the number keeps them apart. OpenEXR sorts
-    // channels by name: padded numbers keep the bands in their order.
+    // Dots would nest layers, and OpenEXR limits names to 255 bytes, so the number tells the bands apart. OpenEXR sorts
+    // channels by name; padded numbers keep the bands in their order.
     channels.push_back({"radiance." + padded(b, image.bands.size()) + "_" + file_name_part(image.bands[b].name),
                         std::vector<float>(begin, begin + static_cast<std::ptrdiff_t>(pixels))});
     std::replace(channels.back().name.begin() + 9, channels.back().name.end(), '.', '_');
@@ -180,7 +180,7 @@ void write_rgb(Writer& writer, const Group& group) {
   if (!visible) writer.warnings.push_back("the bands hold no visible light: " + stem + ".png shows their mean in grey");
 }
 
-/// The image upside down: FITS counts rows from the bottom.
+/// The image turned upside down, since FITS counts rows from the bottom.
 std::vector<double> flipped(const std::vector<double>& top_down, std::size_t width, std::size_t height) {
   std::vector<double> bottom_up(top_down.size());
   const std::size_t rows = width ? top_down.size() / width : 0;
@@ -192,7 +192,7 @@ std::vector<double> flipped(const std::vector<double>& top_down, std::size_t wid
   return bottom_up;
 }
 
-/// Wavelength axis: exact where the bands are evenly spaced, else the band's number (the table BANDS has the rest).
+/// The axis of bands: their wavelengths if they are evenly spaced, else their numbers (the table BANDS has the rest).
 FitsAxis wavelength_axis(const std::vector<Band>& bands) {
   const auto centre = [&](std::size_t i) { return 0.5 * (bands[i].low_nm + bands[i].high_nm); };
   const double step = bands.size() > 1 ? (centre(bands.size() - 1) - centre(0)) / static_cast<double>(bands.size() - 1)

@@ -72,7 +72,7 @@ void check_replaceable(const fs::path& target) {
   }
 }
 
-/// Absolute, without trailing slash; a symbolic link stands for what it points to.
+/// The absolute path without a trailing slash; a symbolic link is followed.
 fs::path resolve(const std::string& target) {
   if (target.empty()) throw Error(ErrorCode::output, "the output folder has an empty name");
   std::error_code error;
@@ -89,14 +89,14 @@ fs::path resolve(const std::string& target) {
 void sync(const fs::path& path) {
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (descriptor < 0) fail_output("open", path, errno);
-  // Some file systems cannot sync folders; that is no loss of the user's data.
+  // Some file systems cannot sync folders. The user's data are safe all the same.
   const bool failed = ::fsync(descriptor) != 0 && errno != EINVAL && errno != EROFS;
   const int code = errno;
   ::close(descriptor);
   if (failed) fail_output("write", path, code);
 }
 
-/// Puts `temporary` at `target`, whatever stood there ending up at `temporary`. Returns an errno or 0.
+/// Puts `temporary` at `target`. What stood there is then at `temporary`. Returns an errno or 0.
 int exchange(const fs::path& temporary, const fs::path& target) {
   if (::rename(temporary.c_str(), target.c_str()) == 0) return 0;
   if (errno != ENOTEMPTY && errno != EEXIST) return errno;
@@ -140,7 +140,7 @@ OutputFolder::OutputFolder(const std::string& target) : target_(resolve(target))
 
 /// Makes the unfinished folder beside the target, hidden, under a name that nobody has. Returns an errno or 0.
 int OutputFolder::make_temporary() {
-  // Not mkdtemp: the result is to have the permissions that the process gives to folders.
+  // Not mkdtemp, because the result shall have the permissions that the process gives to folders.
   std::random_device random;
   const std::string stem = "." + target_.filename().string().substr(0, 200) + ".";
   for (int attempt = 0; attempt < 100; ++attempt) {

@@ -68,7 +68,7 @@ long micro(double degrees) {
   return std::lround(degrees * 1e6);
 }
 
-/// The group's directions by elevation, then azimuth; a pole, which has one azimuth, fills its row.
+/// The group's directions, by elevation, then azimuth. A pole has one azimuth, and its value fills the row.
 std::vector<Spot> spots_of(const Group& group) {
   std::vector<Spot> spots;
   std::map<long, double> azimuths;
@@ -101,7 +101,7 @@ bool even_grid(const std::vector<Spot>& spots) {
   return columns > 1 && rows > 1 && columns * rows == spots.size();
 }
 
-/// Map of |C|; a grid that is regular in both angles becomes tiles, any other set of directions points.
+/// A map of |C|: tiles for a grid that is regular in both angles, points for any other set of directions.
 void map_picture(Writer& writer, const Group& group, const std::string& stem) {
   const std::vector<Spot> spots = spots_of(group);
   const bool tiles = even_grid(spots);

@@ -66,8 +66,8 @@ std::vector<std::string_view> split(std::string_view line) {
   return cells;
 }
 
-/// The total is that of the comment line if there is one (it knows what lies outside the window), else the sum of the
-/// bins.
+/// The total is that of the comment line, which includes what lies outside the window. Without such a line it is the
+/// sum of the bins.
 Reference from_table(const std::string& file, const std::string& text) {
   constexpr std::string_view kTotal = "# total_m2_per_sr: ";
   std::vector<double> delay, density;
@@ -125,7 +125,7 @@ double relative_true_error(const Result& result, const Reference& reference) {
   for (const auto& total : io::totals(result)) {
     const double wanted = wanted_total(total, first, reference);
     first = false;
-    // A zero that was expected to be zero has no error.
+    // A zero that should be zero has no error.
     const double error = total.value == wanted ? 0.0 : std::fabs(total.value - wanted) / std::fabs(wanted);
     if (!std::isnan(error) && !(error <= largest)) largest = error;
   }
@@ -153,7 +153,7 @@ std::vector<Total> totals(const Result& result) {
   for (const auto& pressure : result.pressure) {
     const Vec3 c = pressure.coefficient_m2.value, e = pressure.coefficient_m2.standard_error;
     const double length = std::sqrt(c.x * c.x + c.y * c.y + c.z * c.z);
-    // Components are correlated in an unknown way: the sum of their shares bounds the error of the length.
+    // The correlation of the components is not known; the sum of their shares bounds the error of the length.
     const double error =
         length > 0.0 ? (std::fabs(c.x) * e.x + std::fabs(c.y) * e.y + std::fabs(c.z) * e.z) / length : 0.0;
     all.push_back({pressure.key, length, error, "m2"});

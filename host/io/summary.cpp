@@ -129,12 +129,12 @@ Json& place_of(Json& detectors, const ResultKey& key) {
   return *place;
 }
 
-/// Puts what a record says beside what its place holds already.
+/// Adds a record's entries to those that its place has already.
 void put(Json& place, Json entry) {
   place.is_null() ? void(place = std::move(entry)) : place.update(entry);
 }
 
-/// Single records stand for themselves; those of several orientations form the list "orientations".
+/// A single record stands by itself; those of several orientations form the list "orientations".
 template <class Records, class Entry>
 void add_entries(Json& detectors, const Writer& writer, const Records& records, Entry entry) {
   for (const auto& group : groups(records)) {

@@ -63,7 +63,7 @@ std::string Writer::title(const std::string& kind, const ResultKey& key) const {
 TimeUnit readable_time_unit(double seconds) {
   constexpr TimeUnit kUnits[] = {{1.0, "s"}, {1e3, "ms"}, {1e6, "µs"}, {1e9, "ns"}, {1e12, "ps"}, {1e15, "fs"}};
   if (!(seconds > 0.0)) return kUnits[3];
-  // Ranging people think in nanoseconds: leave them only where the numbers would not read.
+  // Laser ranging uses nanoseconds. Other units are taken only if the numbers would be hard to read.
   if (seconds > 0.05e-9 && seconds < 20e-6) return kUnits[3];
   for (const auto& unit : kUnits) {
     if (seconds * unit.per_second >= 1.0) return unit;

@@ -33,9 +33,9 @@ struct Writer {
   void draw(const Plot& plot, const std::string& name);
 
   std::string scene_name() const;
-  /// Stem of a record's files, which are called `first` (the detector's kind, or what they show: "spectrum"). Where
-  /// there are several detectors of the kind their names stand instead of it, or beside what is shown; then follow
-  /// observer and variant, and the band, for files of one band.
+  /// Stem of a record's files. It begins with `first`: the detector's kind, or what the files show ("spectrum"). If
+  /// there are several detectors of the kind, the detector's name replaces the kind, or follows what is shown. Then
+  /// come observer and variant, and, for files of one band, the band.
   std::string stem(const std::string& first, const ResultKey& key, bool of_band = false);
   /// Words for titles: scene, detector if named, observer, variant.
   std::string title(const std::string& kind, const ResultKey& key) const;
@@ -53,7 +53,7 @@ std::vector<std::vector<const Record*>> groups(const std::vector<Record>& record
       return key.detector == record.key.detector && key.observer == record.key.observer &&
              key.variant == record.key.variant;
     };
-    // Records come grouped: the last group nearly always fits.
+    // Records come in groups, so the last group nearly always fits.
     auto place = found.rbegin();
     while (place != found.rend() && !same(*place)) ++place;
     if (place == found.rend()) {
@@ -65,7 +65,7 @@ std::vector<std::vector<const Record*>> groups(const std::vector<Record>& record
   return found;
 }
 
-/// The same, each band a group of its own: bands are neither orientations nor directions of one another.
+/// The same, with a group for each band, since bands are no orientations of one another.
 template <class Record>
 std::vector<std::vector<const Record*>> groups_by_band(const std::vector<Record>& records) {
   std::vector<std::vector<const Record*>> found;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// CRD v2 full-rate writer; see crd.hpp. A simulated station has no system delay and no atmosphere: those are written
-// as the true zeros they are, all that nobody knows as "na".
+// CRD v2 full-rate writer; see crd.hpp. A simulated station has no system delay and no atmosphere, and these are
+// written as zeros. What is not known is written as "na".
 #include "slr/crd.hpp"
 
 #include <fmt/format.h>
@@ -29,8 +29,8 @@ CrdWriter::CrdWriter(const std::string& path, const CrdHeader& h, const CrdSuppl
   file_.text(fmt::format("H2 {} {} {} {} 7 {}\n", h.station, h.pad, h.system, h.occupancy, h.network));
   file_.text(
       fmt::format("H3 {} {} {} {} 0 {} {}\n", h.target, h.cospar, h.sic, h.norad, h.target_class, h.target_location));
-  // Full rate, first release; not corrected for refraction, centre of mass, amplitude; system delay applied (it is
-  // zero); two-way ranges; data quality undefined.
+  // Full rate, first release. Not corrected for refraction, centre of mass and amplitude. The system delay, which is
+  // zero, is applied. Two-way ranges; data quality undefined.
   file_.text(fmt::format("H4 0 {} {} 0 0 0 0 1 0 2 0\n", calendar(h.start), calendar(h.stop)));
   file_.text(fmt::format("H5 {} {} {} {} {}\n", h.prediction_type, h.prediction_year, h.prediction_date,
                          h.prediction_source, h.prediction_sequence));

@@ -16,7 +16,7 @@ namespace clray::slr {
 
 using namespace ephemeris;
 
-/// What stands before the ranges. Texts hold no blanks; numbers are NaN where unknown.
+/// The records before the ranges. Texts hold no blanks; unknown numbers are NaN.
 struct CrdHeader {
   Epoch produced, start, stop;
   std::string station = "clray", pad = "na", system = "na", occupancy = "na", network = "na";
@@ -36,7 +36,7 @@ struct CrdRange {
   int filter_flag = 0;         ///< 0 unknown, 1 noise, 2 data
 };
 
-/// Record 12: what belongs to ranges from then on.
+/// Record 12: what holds for the ranges that follow.
 struct CrdSupplement {
   std::int64_t epoch_ps = 0;
   double range_rate_m_s = 0.0;  ///< NaN: unknown

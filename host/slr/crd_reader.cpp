@@ -21,7 +21,7 @@ constexpr Form kForms[] = {{"C0", 4, 12},  {"C1", 10, 10}, {"C2", 17, 17}, {"C3"
                            {"12", 8, 8},   {"20", 6, 6},   {"21", 10, 10}, {"30", 9, 9},   {"40", 18, 18},
                            {"41", 18, 18}, {"42", 15, 15}, {"50", 7, 7},   {"00", 1, 999}};
 
-/// Number of fields of a record; false for one that does not belong into the body of a full-rate file.
+/// Number of fields of a record; false for a record that the body of a full-rate file cannot have.
 bool check_form(const RecordReader& in) {
   if (in.type().size() == 2 && in.type()[0] == '9') return true;  // defined by users
   for (const Form& form : kForms) {

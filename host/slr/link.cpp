@@ -27,7 +27,7 @@ LinkRow key_row(const Section& section, const std::string& name) {
   throw Error(ErrorCode::bug, "there is no such key", name);
 }
 
-/// The station's numbers that are not among `rows` yet, but its epoch, on which no photon depends.
+/// Adds the station's other numbers to `rows`, except its epoch, on which no photon depends.
 void add_other_keys(const Station& station, std::vector<LinkRow>* rows) {
   for (const Key<Station>& k : keys<Station>()) {
     const bool there =

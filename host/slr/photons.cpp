@@ -16,8 +16,8 @@ namespace clray::slr {
 
 namespace {
 
-/// Ranges of a record, at the time of its orientation. The station's light goes out from the station; who sees it back
-/// is the observer, at his own range if he is not where the station is.
+/// The ranges of a record, at the time of its orientation: from the station to the body, and from there to the
+/// observer, who has a range of his own unless he is at the station.
 Ranges ranges_of(const Result& result, const Scene& scene, const RangeModel& model, const ResultKey& key) {
   const double time_s =
       key.orientation < result.orientations.size() ? result.orientations[key.orientation].time_s : 0.0;

@@ -15,9 +15,9 @@ namespace clray::slr {
 namespace {
 
 constexpr int kMostCuts = 64;
-constexpr double kReach = 9.0;  // a Gaussian beyond 9 sigma holds 2e-19 of its energy
+constexpr double kReach = 9.0;  // in sigma; 2e-19 of a Gaussian's energy lies beyond
 
-/// A piecewise linear power, checked.
+/// A power that is linear between its points.
 using Table = std::vector<std::pair<double, double>>;
 
 void check_table(const Table& table) {
@@ -68,8 +68,8 @@ void normalise(std::vector<double>* weight) {
   for (double& w : *weight) w /= sum;
 }
 
-/// Gaussian on a grid of step 1: sampled where sigma >= 1.5, since then sum and variance differ from the integrals by
-/// exp(-2 pi^2 sigma^2) < 1e-19 (Poisson's summation formula); three points with the same variance where it is tiny.
+/// A Gaussian on a grid of step 1. With sigma >= 1.5 it is sampled: sum and variance then differ from the integrals by
+/// exp(-2 pi^2 sigma^2) < 1e-19 (Poisson's summation formula). A very narrow one becomes three points of its variance.
 PulseKernel gaussian_kernel(double sigma_bins) {
   PulseKernel kernel;
   if (sigma_bins <= 0.25) {
@@ -90,8 +90,8 @@ PulseKernel gaussian_kernel(double sigma_bins) {
   return kernel;
 }
 
-/// Shares of the table, squeezed about its mean by `squeeze`, on a grid of step 1: each instant is split linearly
-/// between its two neighbours, which keeps sum and mean.
+/// The table's shares on a grid of step 1, after its times were drawn toward its mean by `squeeze`. Each instant is
+/// split linearly between its two neighbours, which keeps sum and mean.
 PulseKernel split_table(const Table& table, double step_s, double mean_s, double squeeze) {
   PulseKernel kernel;
   const auto place = [&](double t) { return (mean_s + squeeze * (t - mean_s)) / step_s; };
@@ -128,7 +128,7 @@ double variance_of(const PulseKernel& kernel, double mean) {
   return total(terms);
 }
 
-/// Splitting widens the pulse a little; squeezing it about its mean until the variance is right undoes that.
+/// Splitting widens the pulse a little, so its times are drawn toward its mean until the variance is right.
 PulseKernel table_kernel(const Table& table, double width_s) {
   const PulseMoments m = table_moments(table);
   const double sigma_s = std::sqrt(std::max(m.variance_s2, 0.0));

@@ -36,8 +36,8 @@ struct PulseMoments {
 };
 PulseMoments pulse_moments(const Station& station);
 
-/// The histogram smeared by the pulse: finer by kernel.cuts and longer by whole old bins at both ends. The very same
-/// numbers for a delta.
+/// The histogram convolved with the pulse. Its bins are finer by kernel.cuts, and it is longer by whole old bins at
+/// both ends. A delta changes no bit.
 Histogram convolve(const Histogram& histogram, const PulseKernel& kernel);
 
 /// Sum of a histogram's masses, compensated (Neumaier 1974).

@@ -67,7 +67,7 @@ void ScatterPlot::add(double time_s, double delay_ns, bool signal) {
 
 std::vector<std::uint8_t> ScatterPlot::pixels() const {
   std::vector<std::uint8_t> rgba(4 * signal_.size());
-  // Few dots would hardly be seen as single pixels: they become plus signs of five.
+  // Single pixels are hard to see. If there are few dots, each becomes a plus sign of five pixels.
   std::uint64_t filled = 0;
   for (std::size_t i = 0; i < signal_.size(); ++i) filled += signal_[i] + noise_[i] > 0;
   const bool large = filled < 40000;

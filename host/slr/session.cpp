@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shots over a pass; see session.hpp. Each block of shots lies within one orientation, that at its step's start.
+// Shots over a pass; see session.hpp. Each block of shots has one orientation: that at the start of its motion step.
 #include "slr/session.hpp"
 
 #include <fmt/format.h>
@@ -56,7 +56,7 @@ std::uint64_t count_shots(double duration_s, double rate_Hz) {
   const double shots = duration_s * rate_Hz;
   if (!(shots < kMostShots))
     refuse(fmt::format("{:.3g} shots; expected fewer than {:.0e}", shots, kMostShots), "station");
-  // A pass of 20 s at 2000 Hz has 40000 shots although 19.999999 would round down.
+  // A pass of 20 s at 2000 Hz has 40000 shots, even if rounding makes it 19.999999 s.
   return std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::floor(shots + 1e-6)));
 }
 
@@ -69,7 +69,7 @@ bool seen_from_source(const Scene& scene, const ResultKey& key) {
   });
 }
 
-/// Shots of a block: distances (one, where they are fixed) and results.
+/// Shots of a block: their distances (a single one if the range is fixed) and results.
 struct Session::Block {
   std::vector<double> range_m, brightness;
   Shots shots;
@@ -81,7 +81,7 @@ struct Session::Block {
 Session::Session(const Result& result, const Scene& scene, const SessionOptions& options)
     : station_(station_of(scene)), options_(options), ranges_(station_) {
   const DelayResult* first = first_of_group(result, scene, options);
-  // A grid of Sun directions has orientations of its own after those of the motion, without delay results.
+  // The orientations of a grid of Sun directions come after those of the motion; they have no delay results.
   delays_.assign(orientation_count(*scene.motion), nullptr);
   for (const DelayResult& d : result.delay) {
     if (same_group(d.key, first->key) && d.key.orientation < delays_.size()) delays_[d.key.orientation] = &d;
@@ -176,8 +176,8 @@ void Session::set_ranges(std::uint64_t first, std::uint32_t count, Block* block)
   }
 }
 
-/// Shots that depend on the ones before: a detector that has not recovered from its last photon misses the gate's
-/// beginning, or all of it.
+/// Shots that depend on those before: a detector that has not recovered from its last photon misses the beginning of
+/// the gate, or all of it.
 void Session::run_in_order(const Gate& gate, std::uint64_t first, std::uint32_t count, Block* block) {
   const auto key0 = static_cast<std::uint32_t>(settings_.seed), key1 = static_cast<std::uint32_t>(settings_.seed >> 32);
   block->shots.time_ns.resize(count);

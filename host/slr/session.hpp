@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A session in the making: which delay results it shoots at, its shots one block after another, for the writer and
-// for tests. Times are those of the scene's motion, or in s from the session's start.
+// A session: which delay results its shots are drawn from, and its shots, block by block, for the writer and for tests.
+// Times are those of the scene's motion, or in s from the session's start.
 #pragma once
 
 #include <functional>
@@ -39,7 +39,7 @@ class Session {
   /// When a shot is fired: in the motion's time, and from the session's start.
   Instant time(std::uint64_t shot) const;
   double since_s(std::uint64_t shot) const { return seconds_between(start_, time(shot)); }
-  /// The motion's time so long after the session's start.
+  /// The motion's time at `since_s` after the session's start.
   Instant at(double since_s) const;
   double last_since_s() const { return since_s(shots_ - 1); }  ///< of the last shot
 
@@ -67,7 +67,7 @@ class Session {
   double start_range_m_ = 0.0, start_brightness_ = 0.0;  // photons per m^2/sr there; they go with range^-4
   Instant start_;
   std::uint64_t shots_ = 0;
-  bool in_order_ = false;                   ///< a dead time that reaches into the next shot's gate
+  bool in_order_ = false;                   ///< the dead time may reach into the next shot's gate
   double recovers_s_ = -1e300;              ///< when the detector sees again, from the start
   std::vector<const DelayResult*> delays_;  ///< one per orientation
   std::vector<std::uint64_t> first_shots_;  ///< of each orientation, and all shots at the end

@@ -24,7 +24,7 @@ namespace {
 
 constexpr double kArcsecPerRad = 206264.80624709636;
 
-/// A name for a field of a record: no blanks, at most ten characters, as the formats say.
+/// A name as the formats want it in a record: no blanks, at most ten characters.
 std::string word(const std::string& name, std::size_t most = 10) {
   std::string text;
   for (const char c : name) text += c > ' ' && c < 127 ? c : '_';
@@ -61,7 +61,7 @@ CrdHeader crd_header(const Session& session, const Scene& scene, std::uint64_t f
   return h;
 }
 
-/// How fast the range changes, by a central difference over 0.2 s (or what the pass allows).
+/// The rate of the range, by a central difference over 0.2 s, or less near the ends of the pass.
 double range_rate(const Session& session, double since_s) {
   const double from = std::max(0.0, since_s - 0.1), to = std::min(session.last_since_s(), since_s + 0.1);
   if (!(to > from)) return 0.0;
@@ -231,7 +231,7 @@ std::vector<ResultKey> session_keys(const Result& result, const Scene& scene) {
   return keys;
 }
 
-/// Those of a session's detector, observer and variant in which sessions differ.
+/// The names in which sessions differ: detector, observer, variant.
 std::vector<std::string> own_names(const std::vector<ResultKey>& keys, const ResultKey& key) {
   std::vector<std::string> names;
   for (const auto name : {&ResultKey::detector, &ResultKey::observer, &ResultKey::variant}) {

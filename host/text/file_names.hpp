@@ -19,7 +19,7 @@ std::string file_name_part(std::string_view text);
 /// The names taken in one folder.
 class FileNames {
  public:
-  /// Keeps a stem from being given out by stem(): that of a file with a name of its own.
+  /// Reserves a stem, so that stem() will not return it: that of a file with a fixed name.
   void reserve(std::string_view stem);
 
   /// "part-part-…" with each part as file_name_part() makes it. The same parts of the same `kind` always get the same

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Plots through gnuplot's standard input; see gnuplot.hpp. The script goes through an unnamed temporary file, so that
-// neither a full pipe nor a dying gnuplot can hang or kill us; a process group of its own keeps Ctrl-C away from it.
+// Plots through gnuplot's standard input; see gnuplot.hpp. The script is an unnamed temporary file, so that neither a
+// full pipe nor a dying gnuplot can hang or kill us. gnuplot has its own process group, so that Ctrl-C does not reach
+// it.
 #include "text/gnuplot.hpp"
 
 #include <fcntl.h>
@@ -64,7 +65,7 @@ Plot& Plot::begin_data(const std::string& name) {
 
 Plot& Plot::point(std::initializer_list<double> numbers) {
   for (const double value : numbers) {
-    // gnuplot reads beyond-double exponents as infinities; NaN is its word for "no point".
+    // gnuplot reads exponents beyond those of a double as infinity; NaN means "no point" to it.
     script_ += std::isfinite(value) ? number(value) : "NaN";
     script_ += ' ';
   }

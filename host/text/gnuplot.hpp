@@ -11,8 +11,8 @@ namespace clray::text {
 /// Text as a gnuplot string literal, on one line, to be shown as it is.
 std::string gnuplot_text(std::string_view text);
 
-/// What to take from times for an axis, and the axis' label: nothing, or, where labels of six digits would all read the
-/// same (Unix seconds …), the whole seconds of the first.
+/// What to subtract from times for an axis, and the label of the axis. It is nothing, or the whole seconds of the first
+/// time if labels of six digits would all read the same, as those of Unix seconds do.
 struct TimeAxis {
   double zero_s = 0.0;
   std::string label;

@@ -9,7 +9,7 @@ namespace clray::text {
 
 namespace {
 
-/// Insertions, deletions, replacements and swaps of neighbours that lead from one word to the other.
+/// How many insertions, deletions, replacements and swaps of neighbours lead from one word to the other.
 std::size_t edit_distance(const std::string& a, const std::string& b) {
   std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
   for (std::size_t i = 0; i <= a.size(); ++i) {

@@ -84,8 +84,8 @@ CLRAY_FN f64 brdf_reflectance(const ClrayMaterial* m, const f64* tables, f64 mu)
   }
 }
 
-/// Upper bound of f·mu_o over all normals for the cosine of half the phase angle; finite and at least 2^-20, so that a
-/// scale can be made of it. What exceeds it goes into the second accumulator.
+/// Upper bound of f·mu_o over all normals, for the cosine of half the phase angle. The scale of the sums is made of it,
+/// so it is finite and at least 2^-20. Weights above it go into the second accumulator.
 CLRAY_FN f64 brdf_bound(const ClrayMaterial* m, const f64* tables, f64 cos_half_phase) {
   const f64 least = 9.5367431640625e-07;
   switch (m->model) {

@@ -53,7 +53,7 @@ CLRAY_FN BrdfSample brdf_mirror_sample(const CLRAY_GLOBAL ClrayMaterial* m, cons
   return s;
 }
 
-/// The largest reflectance; what a cone of acceptance makes of it is the caller's.
+/// The largest reflectance. The caller accounts for the observer's cone.
 CLRAY_FN f64 brdf_mirror_bound(const CLRAY_GLOBAL ClrayMaterial* m, const CLRAY_GLOBAL f64* tables,
                                f64 cos_half_phase) {
   (void)tables;

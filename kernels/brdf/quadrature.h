@@ -111,8 +111,8 @@ inline BrdfCuts brdf_lobe_cuts(f64 mu, f64 width) {
   for (f64 step = width; step < right; step *= 2.0) cuts.add(step);
   cuts.add_scales(0.5 * (right - theta_i), f64_min(width, f64_max(0.25 * (right - theta_i), 1.0e-4)));
   cuts.add(theta_i);
-  // A narrow lobe has nothing to lose near the horizon, a wide one bends there
-  // on the scale of the light's elevation.
+  // A narrow lobe is zero near the horizon. A wide one bends there on the
+  // scale of the light's elevation.
   if (width > 0.02)
     cuts.add_scales(0.5 * (right + theta_i), f64_max(0.25 * (right - theta_i), 1.0e-4));
   else

@@ -2,7 +2,7 @@
 // An isotropic table of f (1/sr) against theta_i, theta_o and phi (rad; phi = 0 on the side of the light). p = scale.
 // At `tables + m->table` lie: the counts n_i, n_o, n_phi; the axes theta_i, theta_o (within [0, pi/2]) and phi (within
 // [0, pi]), strictly increasing; the values [i][o][phi], finite and >= 0. Linear in the three angles, constant beyond
-// the axes. Reciprocity is the table's own matter. Sampling: cosine-weighted.
+// the axes. The table's author answers for reciprocity. Sampling: cosine-weighted.
 #include "brdf/brdf.h"
 #include "brdf/quadrature.h"
 

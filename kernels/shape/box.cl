@@ -15,7 +15,7 @@ CLRAY_FN i32 shape_box_intersect(const CLRAY_GLOBAL f64* p, vec3 o, vec3 d, f64 
 
 /// One coordinate where the ray crosses the face at distance z of another, kept within `half` off the edges.
 CLRAY_FN f64 box_coordinate(f64 o, f64 d, f64 o_face, f64 d_face, f64 half_size) {
-  // Off the edge by the rounding of a step, so that a step inward off either face lands inside.
+  // Kept off the edge by the rounding of a step, so that a step inward from either face ends inside.
   const f64 keep = (1.0 - CLRAY_SHAPE_ROUND) * half_size;
   return f64_clamp(difference_of_products(o, d_face, o_face, d) / d_face, -keep, keep);
 }

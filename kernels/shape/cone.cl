@@ -20,7 +20,7 @@ CLRAY_FN ShapeSpan span_cone(vec3 P, vec3 D) {
   const f64 a = cone_form(D);
   const f64 c = cone_form(P);
   f64 b = fma(P.x, D.x, difference_of_products(P.y, D.y, P.z, D.z));
-  // Within either nappe a steep ray's b has a sign of its own (reversed Cauchy-Schwarz); rounding must not turn it.
+  // Inside a nappe the sign of a steep ray's b is known (reversed Cauchy-Schwarz), and rounding must not change it.
   if (c < 0.0 && a <= 0.0 && D.z != 0.0) b = (D.z > 0.0) == (P.z > 0.0) ? -fabs(b) : fabs(b);
   if (a == 0.0) {
     if (D.z == 0.0) return c <= 0.0 ? span_all() : span_none();
@@ -36,7 +36,7 @@ CLRAY_FN ShapeSpan span_cone(vec3 P, vec3 D) {
     const f64 m12 = fabs(difference_of_products(P.x, D.y, P.y, D.x));
     const f64 reach = sqrt(fma(m13, m13, m23 * m23));
     disc = (reach - m12) * (reach + m12);
-    if (a < 0.0 && disc < 0.0) disc = 0.0;  // a steep ray crosses the double cone always
+    if (a < 0.0 && disc < 0.0) disc = 0.0;  // a steep ray always crosses the double cone
   }
   if (disc < 0.0) return span_none();
   const ShapeSpan s = span_roots(a, b, c, disc);
@@ -56,13 +56,13 @@ CLRAY_FN i32 shape_cone_intersect(const CLRAY_GLOBAL f64* p, vec3 o, vec3 d, f64
   const f64 height = p[1];
   const f64 narrow = p[2] < p[0] ? height : 0.0;
   f64 shift = fma(narrow - o.z, d.z, difference_of_products(-o.x, d.x, o.y, d.y));
-  // Only from outside a ball about the cone: nearer origins need the sign of their own <P,P>.
+  // Only origins outside a ball about the cone are moved; nearer ones need the sign of their own <P,P>.
   const f64 wide = f64_max(p[0], p[2]);
   if (shift <= sqrt(fma(wide, wide, height * height))) shift = 0.0;
   o = v3_fma(shift, d, o);
   const vec3 P = cone_vector(p, o);
   const vec3 D = v3(height * d.x, height * d.y, (p[2] - p[0]) * d.z);
-  // The nappe itself ends at an apex: a slab there could only round a hit away.
+  // At an apex the nappe ends by itself, and a slab could only round a hit away.
   const f64 top = p[2] > 0.0 ? height : CLRAY_SPAN_FAR;
   ShapeSpan s = span_slab(span_cone(P, D), o.z, d.z, 0.0, top, 1u, 2u);
   s.enter += shift;
@@ -82,16 +82,16 @@ CLRAY_FN ShapeSurface shape_cone_surface(const CLRAY_GLOBAL f64* p, vec3 o, vec3
     f64 cos_phi = x.x / rho;
     f64 sin_phi = x.y / rho;
     if (rho <= CLRAY_SHAPE_ROUND * (t + height)) {
-      // At an apex the azimuth is lost in rounding; the face met is the one turned to a ray from outside, away from
-      // one from inside.
+      // At an apex rounding loses the azimuth. A ray from outside meets the face turned to it, a ray from inside the
+      // face turned away.
       const vec3 P = cone_vector(p, o);
       const f64 across = sqrt(fma(d.x, d.x, d.y * d.y));
       const f64 turn = cone_form(P) < 0.0 && P.z > 0.0 ? across : -across;
       cos_phi = across > 0.0 ? d.x / turn : 1.0;
       sin_phi = across > 0.0 ? d.y / turn : 0.0;
     }
-    // Nearest point of the generator, as a share of its length; kept off the rims, and off an apex by so much that a
-    // step inward does not come out on the other side.
+    // The nearest point of the generator, as a share of its length. It is kept off the rims, and so far off an apex
+    // that a step inward does not come out on the other side.
     const f64 off = f64_min(2.0 * s.error / height, 0.25);
     const f64 off_top = top > 0.0 ? off : f64_min(off + 4.0 * s.error * slant / (height * r), 0.25);
     const f64 share = f64_clamp(fma(rho - r, slope, x.z * height) / (slant * slant), off, 1.0 - off_top);

@@ -15,7 +15,7 @@ CLRAY_FN i32 shape_cylinder_intersect(const CLRAY_GLOBAL f64* p, vec3 o, vec3 d,
 CLRAY_FN ShapeSurface shape_cylinder_surface(const CLRAY_GLOBAL f64* p, vec3 o, vec3 d, f64 t, u32 part) {
   const f64 r = p[0];
   const f64 half_height = 0.5 * p[1];
-  // Points stay this much away from a rim, so that a step inward off either face lands inside.
+  // Points stay this far from a rim, so that a step inward from either face ends inside.
   const f64 keep = 1.0 - CLRAY_SHAPE_ROUND;
   ShapeSurface s;
   if (part == 0u) {

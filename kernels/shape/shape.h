@@ -39,9 +39,9 @@ CLRAY_FN ShapeFacet shape_facet_of(u32 axis, f64 side, f64 offset, u32 round, f6
 //                                                    leaving it can hit it again), or several of them
 //   i32 shape_X_facet(p, part, &facet)                whether that part is flat and there, and which face it is (host)
 // with `const CLRAY_GLOBAL f64 *p`. A ray that starts on the outside, moved off by `error` along the normal, must not
-// hit the same spot again: signs of the constant term of a quadratic are to be exact there. `error` therefore also
-// covers the rounding of point ± normal·error and of the next test; carrying points between frames is the caller's.
-// Parts: 0 side, 1 bottom, 2 top; a box has 0 to 5 for -x +x -y +y -z +z.
+// hit the same spot again, so the sign of a quadratic's constant term must be exact there. `error` therefore also
+// covers the rounding of point ± normal·error and of the next test. The caller adds what carrying points between frames
+// costs. Parts: 0 side, 1 bottom, 2 top; a box has 0 to 5 for -x +x -y +y -z +z.
 #define CLRAY_SHAPE_CLOSED 1
 #define CLRAY_SHAPE_CONVEX 2
 #define CLRAY_SHAPE_PLANE 4

@@ -40,7 +40,7 @@ CLRAY_FN ShapeSpan span_roots(f64 a, f64 b, f64 c, f64 disc) {
   return t0 < t1 ? span_make(t0, t1) : span_make(t1, t0);
 }
 
-/// Overlap with low <= o + t·d <= high; equal ends stay with the part that was there first.
+/// Overlap with low <= o + t·d <= high. If two ends are equal, the part that was there first keeps it.
 CLRAY_FN ShapeSpan span_slab(ShapeSpan s, f64 o, f64 d, f64 low, f64 high, u32 low_part, u32 high_part) {
   if (d == 0.0) return o < low || o > high ? span_none() : s;
   const f64 t_low = (low - o) / d;
@@ -79,7 +79,7 @@ CLRAY_FN ShapeSpan span_cylinder(f64 r, vec3 o, vec3 d) {
   const f64 rho = sqrt(fma(o.x, o.x, o.y * o.y));
   const f64 c = (rho - r) * (rho + r);
   const f64 a = fma(d.x, d.x, d.y * d.y);
-  // Below 1e-100 of sideways motion per metre the ray is parallel; a would lose its digits to underflow.
+  // With less than 1e-100 of sideways motion per metre the ray counts as parallel: a would underflow.
   if (a < 1.0e-200) return c <= 0.0 ? span_all() : span_none();
   const f64 b = difference_of_products(o.x, d.x, -o.y, d.y);
   if (c < 0.0) return span_roots(a, b, c, fma(b, b, -(a * c)));
