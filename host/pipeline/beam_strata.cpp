@@ -12,21 +12,21 @@
 namespace clray {
 namespace {
 
-constexpr double kMostStrips = 1024.0;  // over the body, of path length
-constexpr int kMostCuts = 32;           // parts of a cell
-constexpr double kMostSlots = 1 << 20;  // about, over all views
-constexpr std::size_t kMostLooks = 16;  // weights of a cell: observers times lanes
-constexpr std::size_t kStretch = 4;     // intervals of path on either side that share one probability
+constexpr double kMostStrips = 1024.0;   // over the body, of path length
+constexpr int kMostCuts = 32;            // parts of a cell
+constexpr double kMostPieces = 1 << 20;  // about, over all views
+constexpr std::size_t kMostLooks = 16;   // weights of a cell: observers times lanes
+constexpr std::size_t kStretch = 4;      // intervals of path on either side that share one probability
 // These shares of the probability follow area and path length; the rest follows what the surface sends.
 constexpr double kByArea = 0.25;
 constexpr double kByPath = 0.375;
 
 /// A part of a cell: the area between two lines across its direction of steepest path.
-struct Slot {
+struct Piece {
   std::int64_t path;       // the interval of path length that it lies in
   std::uint32_t column;    // 0: its strip is that whole interval; else 1 + the column of cells that is its strip
-  std::uint32_t place;     // CLRAY_SLOT_*
-  std::uint32_t from, to;  // shares of the cell's area below its two lines, in 1/CLRAY_SLOT_PARTS
+  std::uint32_t place;     // CLRAY_PIECE_*
+  std::uint32_t from, to;  // shares of the cell's area below its two lines, in 1/CLRAY_PIECE_PARTS
   double weight;           // of the surface there
   double probability;
 };
@@ -82,7 +82,7 @@ class Stratifier {
       if (cells[cell].state == BeamCell::empty) continue;
       by_path_ ? cut(cell) : whole(cell);
     }
-    if (slots_.empty()) return;
+    if (pieces_.empty()) return;
     probabilities();
     write(strata, view, area_m2);
   }
@@ -135,7 +135,7 @@ class Stratifier {
     const double cells = static_cast<double>(beams_.views.size() * cells_->size());
     lowest_ = static_cast<std::int64_t>(std::floor((plan_.paths.low() - bins_->first_m) / width_));
     highest_ = static_cast<std::int64_t>(std::floor((plan_.paths.high() - bins_->first_m) / width_));
-    cuts_ = std::clamp(static_cast<int>(8.0 * kMostSlots / cells), 1, kMostCuts);  // few cells need as many
+    cuts_ = std::clamp(static_cast<int>(8.0 * kMostPieces / cells), 1, kMostCuts);  // few cells need as many
   }
 
   /// Cuts a cell where its surface crosses from one strip to the next.
@@ -150,21 +150,21 @@ class Stratifier {
     const bool swap = std::fabs(gv) > std::fabs(gu);
     const double high = swap ? std::fabs(gv) : std::fabs(gu), low = swap ? std::fabs(gu) : std::fabs(gv);
     const auto steps =
-        static_cast<std::uint32_t>(high > 0.0 ? std::floor(low / high * CLRAY_SLOT_STEEPNESS + 0.5) : 0.0);
-    const double r = steps / static_cast<double>(CLRAY_SLOT_STEEPNESS);
-    // Slots go round the middle of the beam, within a cell as well.
+        static_cast<std::uint32_t>(high > 0.0 ? std::floor(low / high * CLRAY_PIECE_STEEPNESS + 0.5) : 0.0);
+    const double r = steps / static_cast<double>(CLRAY_PIECE_STEEPNESS);
+    // Pieces go round the middle of the beam, within a cell as well.
     const double x = 2.0 * i + 1.0 - n_, y = 2.0 * j + 1.0 - n_;
     const double along_u = swap ? (gu < 0.0 ? -1.0 : 1.0) : (gu < 0.0 ? r : -r);
     const double along_v = swap ? (gv < 0.0 ? r : -r) : (gv < 0.0 ? -1.0 : 1.0);
     const bool reverse = along_v * x - along_u * y < 0.0;
-    const std::uint32_t place = (reverse ? CLRAY_SLOT_REVERSE : 0u) | at | steps << CLRAY_SLOT_STEEPNESS_SHIFT |
-                                (gu < 0.0 ? CLRAY_SLOT_FLIP_U : 0u) | (gv < 0.0 ? CLRAY_SLOT_FLIP_V : 0u) |
-                                (swap ? CLRAY_SLOT_SWAP : 0u);
+    const std::uint32_t place = (reverse ? CLRAY_PIECE_REVERSE : 0u) | at | steps << CLRAY_PIECE_STEEPNESS_SHIFT |
+                                (gu < 0.0 ? CLRAY_PIECE_FLIP_U : 0u) | (gv < 0.0 ? CLRAY_PIECE_FLIP_V : 0u) |
+                                (swap ? CLRAY_PIECE_SWAP : 0u);
     const double middle = -(way_.x * u + way_.y * v + way_.z * cell.w);
     const double start = middle - 0.5 * high * (1.0 + r), span = high * (1.0 + r);
     const std::int64_t k0 = interval_of(start), k1 = interval_of(start + span);
     if (span * n_ < width_) {  // face-on: all paths are alike, so columns make the strata
-      add(interval_of(middle), i + 1, at | (x < 0.0 ? CLRAY_SLOT_REVERSE : 0u), 0.0, 1.0, weights_[at]);
+      add(interval_of(middle), i + 1, at | (x < 0.0 ? CLRAY_PIECE_REVERSE : 0u), 0.0, 1.0, weights_[at]);
       return;
     }
     if (k1 - k0 >= cuts_) {  // too steep to be cut at every strip: even parts
@@ -190,23 +190,23 @@ class Stratifier {
   void whole(std::uint32_t at) { add(0, at % n_ + 1, at, 0.0, 1.0, weights_[at]); }
 
   void add(std::int64_t path, std::uint32_t column, std::uint32_t place, double from, double to, double weight) {
-    const auto a = static_cast<std::uint32_t>(std::floor(from * CLRAY_SLOT_PARTS + 0.5));
-    const auto b = static_cast<std::uint32_t>(std::floor(to * CLRAY_SLOT_PARTS + 0.5));
+    const auto a = static_cast<std::uint32_t>(std::floor(from * CLRAY_PIECE_PARTS + 0.5));
+    const auto b = static_cast<std::uint32_t>(std::floor(to * CLRAY_PIECE_PARTS + 0.5));
     if (a >= b) return;
-    slots_.push_back({path, column, place, a, b, weight, 0.0});
+    pieces_.push_back({path, column, place, a, b, weight, 0.0});
   }
 
-  std::size_t interval(const Slot& slot) const { return static_cast<std::size_t>(slot.path - lowest_); }
-  std::size_t strip(const Slot& slot) const { return interval(slot) * (n_ + 1) + slot.column; }
+  std::size_t interval(const Piece& piece) const { return static_cast<std::size_t>(piece.path - lowest_); }
+  std::size_t strip(const Piece& piece) const { return interval(piece) * (n_ + 1) + piece.column; }
 
   void probabilities() {
     std::vector<double> area(static_cast<std::size_t>(highest_ - lowest_ + 1), 0.0);
     double all = 0.0, weight = 0.0;
-    for (const Slot& slot : slots_) {
-      const double size = slot.to - slot.from;
-      area[interval(slot)] += size;
+    for (const Piece& piece : pieces_) {
+      const double size = piece.to - piece.from;
+      area[interval(piece)] += size;
       all += size;
-      weight += slot.weight * size;
+      weight += piece.weight * size;
     }
     // Stretches of path length have equal shares, but less where there is little area. A sliver beside full intervals
     // must not have a share of its own: its few rays would have another weight than the rest, and most replicates would
@@ -225,10 +225,10 @@ class Stratifier {
     const double by_path = by_path_ ? kByPath : 0.0;
     const double by_weight = weight > 0.0 ? 1.0 - kByArea - kByPath : 0.0;
     const double by_area = 1.0 - by_path - by_weight;
-    for (Slot& slot : slots_) {
-      const double size = slot.to - slot.from;
-      slot.probability = by_area * size / all + by_path * size / (about[interval(slot)] * shares);
-      if (weight > 0.0) slot.probability += by_weight * slot.weight * size / weight;
+    for (Piece& piece : pieces_) {
+      const double size = piece.to - piece.from;
+      piece.probability = by_area * size / all + by_path * size / (about[interval(piece)] * shares);
+      if (weight > 0.0) piece.probability += by_weight * piece.weight * size / weight;
     }
   }
 
@@ -259,27 +259,27 @@ class Stratifier {
     }
   }
 
-  /// Sorts the slots by strip and keeps their order within each. Returns where each strip starts, and the end.
-  std::vector<std::size_t> sort_by_strip(std::vector<Slot>* sorted) const {
+  /// Sorts the pieces by strip and keeps their order within each. Returns where each strip starts, and the end.
+  std::vector<std::size_t> sort_by_strip(std::vector<Piece>* sorted) const {
     std::vector<std::size_t> next(static_cast<std::size_t>(highest_ - lowest_ + 1) * (n_ + 1) + 1, 0), starts;
-    for (const Slot& slot : slots_) ++next[strip(slot) + 1];
+    for (const Piece& piece : pieces_) ++next[strip(piece) + 1];
     for (std::size_t s = 0; s + 1 < next.size(); ++s) {
       if (next[s + 1] != 0) starts.push_back(next[s]);
       next[s + 1] += next[s];
     }
-    starts.push_back(slots_.size());
-    sorted->resize(slots_.size());
-    for (const Slot& slot : slots_) (*sorted)[next[strip(slot)]++] = slot;
+    starts.push_back(pieces_.size());
+    sorted->resize(pieces_.size());
+    for (const Piece& piece : pieces_) (*sorted)[next[strip(piece)]++] = piece;
     return starts;
   }
 
   void write(std::vector<ClrayStratum>* strata, ClrayView* view, double* area_m2) const {
-    std::vector<Slot> slots;
-    const std::vector<std::size_t> starts = sort_by_strip(&slots);
+    std::vector<Piece> pieces;
+    const std::vector<std::size_t> starts = sort_by_strip(&pieces);
     const std::size_t strips = starts.size() - 1;
     std::vector<double> each, of_strip(strips, 0.0);
     for (std::size_t s = 0; s < strips; ++s) {
-      for (std::size_t k = starts[s]; k < starts[s + 1]; ++k) of_strip[s] += slots[k].probability;
+      for (std::size_t k = starts[s]; k < starts[s + 1]; ++k) of_strip[s] += pieces[k].probability;
     }
     const std::vector<std::uint32_t> strip_last = intervals(of_strip);
     view->first_stratum = static_cast<std::uint32_t>(strata->size());
@@ -289,7 +289,7 @@ class Stratifier {
     double largest = 0.0;
     for (std::size_t s = 0; s < strips; ++s) {
       each.clear();
-      for (std::size_t k = starts[s]; k < starts[s + 1]; ++k) each.push_back(slots[k].probability);
+      for (std::size_t k = starts[s]; k < starts[s + 1]; ++k) each.push_back(pieces[k].probability);
       const std::vector<std::uint32_t> last = intervals(each);
       ClrayStratum& strip = (*strata)[view->first_stratum + s];
       strip.a = static_cast<std::uint32_t>(strata->size());
@@ -297,16 +297,16 @@ class Stratifier {
       const std::size_t first = strata->size();
       append(last, strata);
       for (std::size_t k = 0; k < last.size(); ++k) {
-        const Slot& slot = slots[starts[s] + k];
-        (*strata)[first + k].a = slot.place;
-        (*strata)[first + k].b = slot.from | (slot.to - 1u) << 16;
-        largest = std::max(largest, (slot.to - slot.from) / (size(strip_last, s) * size(last, k)));
+        const Piece& piece = pieces[starts[s] + k];
+        (*strata)[first + k].a = piece.place;
+        (*strata)[first + k].b = piece.from | (piece.to - 1u) << 16;
+        largest = std::max(largest, (piece.to - piece.from) / (size(strip_last, s) * size(last, k)));
       }
     }
     int exponent;
     std::frexp(largest, &exponent);
     view->share_scale = std::ldexp(1.0, -exponent);  // shares stay below 1
-    *area_m2 = grid_.size_u * grid_.size_v / (1.0 * CLRAY_SLOT_PARTS * n_ * n_) * std::ldexp(1.0, 64 + exponent);
+    *area_m2 = grid_.size_u * grid_.size_v / (1.0 * CLRAY_PIECE_PARTS * n_ * n_) * std::ldexp(1.0, 64 + exponent);
   }
 
   static double size(const std::vector<std::uint32_t>& last, std::size_t k) {
@@ -326,7 +326,7 @@ class Stratifier {
   double cell_u_ = 0.0, cell_v_ = 0.0, first_ = 0.0, width_ = 1.0;
   vec3 way_{};  // path length by way of x is -way·x
   std::int64_t lowest_ = 0, highest_ = 0;
-  std::vector<Slot> slots_;
+  std::vector<Piece> pieces_;
   std::vector<double> weights_;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where a point of the unit square lies in a stratified beam (host/pipeline/beam_strata.hpp): its first coordinate
-// chooses a strip and the place across it, the second a slot of that strip and the place along it. The map of a slot
+// chooses a strip and the place across it, the second a piece of that strip and the place along it. The map of a piece
 // onto its part of a cell keeps areas, so a ray's weight is constant within it.
 #ifndef CLRAY_STRATA_CL
 #define CLRAY_STRATA_CL
@@ -37,26 +37,26 @@ static void strata_square(f64 q, f64 along, f64 r, f64 *x, f64 *y) {
 
 /// Carries u to where its stratum lies in the beam's rectangle; returns the ray's share of the beam.
 static f64 strata_place(const __global ClrayStratum *strata, const __global ClrayView *view, f64 u[2]) {
-  f64 across, along, strip_size, slot_size;
+  f64 across, along, strip_size, piece_size;
   const u32 strip = strata_choose(strata, view->first_stratum, view->strips, u[0], &across, &strip_size);
-  const u32 slot = strata_choose(strata, strata[strip].a, strata[strip].b, u[1], &along, &slot_size);
-  const u32 a = strata[slot].a, b = strata[slot].b;
+  const u32 piece = strata_choose(strata, strata[strip].a, strata[strip].b, u[1], &along, &piece_size);
+  const u32 a = strata[piece].a, b = strata[piece].b;
   const f64 from = (f64)(b & 0xffffu), to = (f64)(b >> 16) + 1.0;
-  const f64 r = (f64)((a >> CLRAY_SLOT_STEEPNESS_SHIFT) & (2u * CLRAY_SLOT_STEEPNESS - 1u)) / (f64)CLRAY_SLOT_STEEPNESS;
+  const f64 r = (f64)((a >> CLRAY_PIECE_STEEPNESS_SHIFT) & (2u * CLRAY_PIECE_STEEPNESS - 1u)) / (f64)CLRAY_PIECE_STEEPNESS;
   f64 x, y;
-  if (a & CLRAY_SLOT_REVERSE) along = 1.0 - along;
-  strata_square(fma(across, to - from, from) / (f64)CLRAY_SLOT_PARTS, along, r, &x, &y);
-  if (a & CLRAY_SLOT_SWAP) {
+  if (a & CLRAY_PIECE_REVERSE) along = 1.0 - along;
+  strata_square(fma(across, to - from, from) / (f64)CLRAY_PIECE_PARTS, along, r, &x, &y);
+  if (a & CLRAY_PIECE_SWAP) {
     const f64 t = x;
     x = y;
     y = t;
   }
-  if (a & CLRAY_SLOT_FLIP_U) x = 1.0 - x;
-  if (a & CLRAY_SLOT_FLIP_V) y = 1.0 - y;
-  const u32 cell = a & CLRAY_SLOT_CELL, grid = view->grid;
+  if (a & CLRAY_PIECE_FLIP_U) x = 1.0 - x;
+  if (a & CLRAY_PIECE_FLIP_V) y = 1.0 - y;
+  const u32 cell = a & CLRAY_PIECE_CELL, grid = view->grid;
   u[0] = ((f64)(cell % max(grid, 1u)) + x) / (f64)grid;
   u[1] = ((f64)(cell / max(grid, 1u)) + y) / (f64)grid;
-  return (to - from) / (strip_size * slot_size) * view->share_scale;
+  return (to - from) / (strip_size * piece_size) * view->share_scale;
 }
 
 #endif

@@ -76,28 +76,28 @@ typedef struct ClrayView {
   u32 root;                   // of the top-level BVH (or of the only one)
   u32 first_stratum, strips;  // strata of the beam; 0: its rectangle is sampled evenly
   u32 grid;                   // cells along each edge of the rectangle
-  // Share of a ray = share_scale·CLRAY_SLOT_PARTS·(area of its slot / area of a cell)/(width of strip·width of slot).
+  // Share of a ray = share_scale·CLRAY_PIECE_PARTS·(area of piece / area of cell)/(width of strip·width of piece).
   f64 share_scale;
 } ClrayView;
 
-/// A stratum of the beam: a strip of a view, or a slot of a strip (host/pipeline/beam_strata.hpp). A uniform 32-bit
+/// A stratum of the beam: a strip of a view, or a piece of a strip (host/pipeline/beam_strata.hpp). A uniform 32-bit
 /// number chooses the stratum whose `last` is the first that is not below it.
 typedef struct ClrayStratum {
   u32 last;
   u32 guide;  // in the k-th of n strata: where a search for numbers from k/n of 2^32 on may begin
-  u32 a, b;   // of a strip: its first slot, the number of its slots; of a slot: see below
+  u32 a, b;   // of a strip: its first piece, the number of its pieces; of a piece: see below
 } ClrayStratum;
-// A slot is a part of a cell between two lines of equal path length. Its `a` holds the cell (row·grid + column) and the
-// direction of the lines: the smaller slope of path over the larger, which of u and v has the larger, and which fall.
-// Its `b` holds the area of the cell below each line, in 1/CLRAY_SLOT_PARTS: bits 0-15, and bits 16-31 plus one.
-#define CLRAY_SLOT_CELL 0x3ffffu
-#define CLRAY_SLOT_STEEPNESS_SHIFT 18
-#define CLRAY_SLOT_PARTS 65536
-#define CLRAY_SLOT_STEEPNESS 512  // of 1, in 10 bits
-#define CLRAY_SLOT_REVERSE (1u << 28)
-#define CLRAY_SLOT_FLIP_U (1u << 29)
-#define CLRAY_SLOT_FLIP_V (1u << 30)
-#define CLRAY_SLOT_SWAP (1u << 31)
+// A piece is a part of a cell between two lines of equal path length. Its `a` holds the cell (row·grid + column) and
+// the direction of the lines: the smaller slope of path over the larger, which of u and v has the larger, and which
+// fall. Its `b` holds the area of the cell below each line, in 1/CLRAY_PIECE_PARTS: bits 0-15, and bits 16-31 plus one.
+#define CLRAY_PIECE_CELL 0x3ffffu
+#define CLRAY_PIECE_STEEPNESS_SHIFT 18
+#define CLRAY_PIECE_PARTS 65536
+#define CLRAY_PIECE_STEEPNESS 512  // of 1, in 10 bits
+#define CLRAY_PIECE_REVERSE (1u << 28)
+#define CLRAY_PIECE_FLIP_U (1u << 29)
+#define CLRAY_PIECE_FLIP_V (1u << 30)
+#define CLRAY_PIECE_SWAP (1u << 31)
 
 /// One direction to which hits are connected in one view: an observer for a beam, the source for pixels.
 typedef struct ClrayConnection {

@@ -80,7 +80,7 @@ std::vector<double> spread(std::uint32_t n, std::uint64_t seed) {
 
 }  // namespace
 
-TEST_CASE("slots of a cell are its whole area, once, and every filled cell has some") {
+TEST_CASE("pieces of a cell are its whole area, once, and every filled cell has some") {
   for (const Case& c : cases()) {
     CAPTURE(c.name);
     const clray::PassPlan plan = plan_of(c.scene);
@@ -90,8 +90,8 @@ TEST_CASE("slots of a cell are its whole area, once, and every filled cell has s
     for (u32 s = 0; s < view.strips; ++s) {
       const ClrayStratum& strip = plan.beams.strata.at(view.first_stratum + s);
       for (u32 k = 0; k < strip.b; ++k) {
-        const ClrayStratum& slot = plan.beams.strata.at(strip.a + k);
-        parts[slot.a & CLRAY_SLOT_CELL].push_back({slot.b & 0xffffu, (slot.b >> 16) + 1});
+        const ClrayStratum& piece = plan.beams.strata.at(strip.a + k);
+        parts[piece.a & CLRAY_PIECE_CELL].push_back({piece.b & 0xffffu, (piece.b >> 16) + 1});
       }
     }
     std::size_t broken = 0;
@@ -153,7 +153,7 @@ TEST_CASE("weighted, rays fill the beam evenly: the areas of rectangles in it") 
     std::vector<std::uint8_t> filled(view.grid * view.grid, 0);
     for (u32 s = 0; s < view.strips; ++s) {
       const ClrayStratum& strip = plan.beams.strata.at(view.first_stratum + s);
-      for (u32 k = 0; k < strip.b; ++k) filled[plan.beams.strata[strip.a + k].a & CLRAY_SLOT_CELL] = 1;
+      for (u32 k = 0; k < strip.b; ++k) filled[plan.beams.strata[strip.a + k].a & CLRAY_PIECE_CELL] = 1;
     }
     cl::Kernel kernel = kernel_of(kPlace);
     const std::size_t count = points.size() / 2;
