@@ -30,7 +30,7 @@ constexpr const char* kFooter =
     "Exit status: 0 done, 1 a fault of clray, 2 wrong arguments, 3 unusable scene or mesh, 4 no usable\n"
     "device, 5 the result cannot be written, 130 or 143 interrupted (what was finished is saved).";
 
-/// What the options write into before they are parsed as values.
+/// The options' texts, before they are parsed as values.
 struct Texts {
   std::optional<std::string> rays, target, time, source, observer, bins, bounces, seed, unit, group, slice, sampler;
 };
@@ -206,7 +206,7 @@ void parse_values(Arguments& a, const Texts& t) {
   if (t.sampler) a.sobol = for_key("sampler", *t.sampler, *t.sampler, "--sampler") == "sobol";
 }
 
-/// CLI11's words about what is wrong, in ours.
+/// CLI11's complaint in our words.
 [[noreturn]] void complain(const CLI::App& app, const CLI::ParseError& error) {
   if (dynamic_cast<const CLI::ExtrasError*>(&error)) {
     for (const auto& word : app.remaining()) {
@@ -268,7 +268,7 @@ Arguments parse_arguments(int argc, char** argv) {
 
 void apply(const Arguments& a, Scene& scene) {
   TraceOptions& trace = scene.trace;
-  // A count or a target on the command line stands instead of the file's, not beside it.
+  // A count or a target on the command line replaces those of the file.
   if (a.rays || a.target_error_percent) {
     trace.rays = a.rays.value_or(0);
     trace.target_error_percent = a.target_error_percent.value_or(0.0);

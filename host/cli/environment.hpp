@@ -8,8 +8,8 @@
 namespace clray::cli {
 
 /// Sets PoCL's variables for as long as it lives; made before the first thread and the first OpenCL call.
-/// PoCL's handler would turn a host division by zero into 0. A folder of compiled kernels that cannot be written fails
-/// every build: a temporary one takes its place.
+/// PoCL's handler would turn a host division by zero into 0. If the folder of compiled kernels cannot be written, every
+/// build would fail, so a temporary folder replaces it.
 class Environment {
  public:
   Environment();

@@ -39,12 +39,12 @@ void catch_signals() {
   struct sigaction action {};
   action.sa_handler = on_signal;
   sigemptyset(&action.sa_mask);
-  // Calls such as write() go on: an early end must not look like a failing disk.
+  // Calls such as write() are resumed, since an early end must not look like a failing disk.
   action.sa_flags = SA_RESTART;
   for (const int signal : {SIGINT, SIGTERM}) {
     struct sigaction before {};
     sigaction(signal, nullptr, &before);
-    // Whoever started us with the signal ignored (nohup, a shell's background job) meant it.
+    // If the signal was ignored when we started (nohup, a shell's background job), it stays so.
     if (before.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
   }
 }
@@ -92,8 +92,8 @@ std::string output_folder(const cli::Arguments& arguments, const Scene& scene) {
   return "clray-out/" + (scene.name.empty() ? std::string("scene") : scene.name);
 }
 
-/// A station turns the pulse into photons; with a motion it also makes a session, when the files are written. Returns
-/// a text that then holds what a person is told of it.
+/// Turns the pulse into photons if there is a station. With a motion there is also a session, run when the files are
+/// written. Returns a text that then says what the session found.
 std::shared_ptr<std::string> range_with_station(const Scene& scene, Device& device, Result& result,
                                                 WriteOptions& options) {
   auto told = std::make_shared<std::string>();

@@ -69,7 +69,7 @@ void ProgressBar::show(const Progress& progress) {
                                  short_count(progress.rays_per_s), error, short_time(progress.seconds_left));
   winsize window{};
   const std::size_t width = ::ioctl(STDERR_FILENO, TIOCGWINSZ, &window) == 0 && window.ws_col > 0 ? window.ws_col : 80;
-  // A wrapped line cannot be taken back; cut it, between characters.
+  // A wrapped line cannot be overwritten, so it is cut, between characters.
   while (characters(line) >= width) {
     while ((line.back() & 0xc0) == 0x80) line.pop_back();
     line.pop_back();
@@ -121,7 +121,7 @@ std::string member(const ResultKey& key, std::size_t orientations) {
   return name;
 }
 
-/// Rows beyond which a table no longer fits a screen; the files have them all.
+/// A table of more rows would not fit a screen; the files have all of them.
 constexpr std::size_t kMostRows = 12;
 
 std::string more_rows(std::size_t count) {
@@ -173,7 +173,7 @@ double length(const Vec3& v) {
   return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
 }
 
-/// Many directions: the span of |C| says more than the first rows.
+/// Of many directions the range of |C| says more than the first rows.
 std::string force_span(const Result& result) {
   double low = length(result.pressure.front().coefficient_m2.value), high = low;
   for (const auto& p : result.pressure) {

@@ -115,7 +115,7 @@ struct Source {
   Kind kind = Kind::laser;
   Vec3 direction{0.0, 0.0, 1.0};     ///< unit vector toward the source
   double wavelength_nm = 532.0;      ///< of a laser
-  std::vector<Band> bands;           ///< empty: the laser line; of a sun one of 400-700 nm, for pressure all its light
+  std::vector<Band> bands;           ///< empty: the laser line; a sun's 400-700 nm, for pressure all its light
   std::optional<Spectrum> spectrum;  ///< W/m²/nm; a sun without one is Planck at 5772 K
   double blackbody_K = 0.0;          ///< > 0: Planck at this temperature, scaled to irradiance_W_m2
   double irradiance_W_m2 = constants::kSolarConstant_W_m2;  ///< of a sun or blackbody, all wavelengths
@@ -130,7 +130,7 @@ struct Observer {
   double range_m = 0.0;         ///< distance, for received power and magnitude; 0: that of the station, if any
 };
 
-/// Whether an observer is where the source is: because the scene says so, or because their directions are equal bit for
+/// Whether an observer is at the source: the scene says so, or the two directions are equal bit for
 /// bit.
 inline bool at_source(const Observer& observer, const Source& source) {
   return observer.monostatic || observer.direction == source.direction;
@@ -202,7 +202,7 @@ struct Scene {
 
 /// What the command line may say about a scene; it overrides the file.
 struct SceneOptions {
-  double length_unit_m = 0.0;  ///< of mesh files; 0: the file's word, or metres
+  double length_unit_m = 0.0;  ///< of mesh files; 0: what the scene file says, or metres
   std::string material;        ///< "model key=value …": overrides every material
   std::optional<Vec3> source;
   std::optional<Vec3> observer;

@@ -38,14 +38,14 @@ MoreFiles session_files(const Result& result, const Scene& scene, const std::str
 /// Whether a scene makes a session: it has a station, a motion, a laser and an observer at the source.
 bool has_session(const Scene& scene);
 
-/// Expected signal photons per ns in each bin of `delay` at that range, transmit pulse included; what the pulse
-/// smears out of the window is left out. Throws Error(input) for a station or range that makes no sense.
+/// Expected signal photons per ns in each bin of `delay` at that range, transmit pulse included. What the pulse carries
+/// out of the window is left out. Throws Error(input) for a station or range that makes no sense.
 std::vector<double> photons_per_ns(const DelayResult& delay, const Station& station, double range_m,
                                    double wavelength_nm = 532.0);
 
-/// Fills in `photons_per_ns` of all delay results of a scene with a station and a laser: each at the range of its
-/// orientation's time, and toward an observer elsewhere at that observer's own range (that of the station if he has
-/// none) with the station's receiver. Throws Error(input).
+/// Fills in `photons_per_ns` of all delay results of a scene with a station and a laser. Each is at the range of its
+/// orientation's time. An observer who is not at the station has the station's receiver, and a range of his own or else
+/// the station's. Throws Error(input).
 void expect_photons(const Scene& scene, Result* result);
 
 /// The link budget of a result's first delay record, for a person: every factor with its value, unit, default and

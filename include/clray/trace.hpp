@@ -13,8 +13,8 @@ struct Scene;
 struct Result;
 class Device;
 
-/// When to stop and how to sample; `clray --list trace` has the ranges. Of rays, target and time whichever comes first;
-/// with none of the three: to 1 % with at least 2^22 rays over all orientations together.
+/// When to stop and how to sample; `clray --list trace` has the ranges. Rays, target or time end the run, whichever
+/// comes first. Without any of them it goes to 1 %, with at least 2^22 rays over all orientations together.
 struct TraceOptions {
   int max_bounces = 1;                  ///< surface interactions
   std::uint64_t rays = 0;               ///< primary rays per orientation, rounded up to 16·2^k; 0: not given
