@@ -118,6 +118,8 @@ Json image_entry(const ImageResult& image) {
           {"right", vector(image.right)},
           {"up", vector(image.up)},
           {"toward", vector(image.toward)},
+          {"unseen_mirrors_m2", image.unseen_mirrors_m2},
+          {"unseen_caustics_m2", image.unseen_caustics_m2},
           {"bands", bands}};
 }
 

@@ -137,36 +137,42 @@ void picture_axes(const Orientation& orientation, const Vec3& toward, PictureFra
   frame->up.push_back(vec_of(v3_unit(v3_cross(o, right))));
 }
 
-/// Frames the body in every view with the same pixel size; row 0 is on top.
-void frame_pictures(const Geometry& geometry, const std::vector<std::vector<RigidMotion>>& motions,
-                    const Vec3& reference, const PictureSize& size, Beams* out) {
-  struct Extent {
-    double right, up, nearest;  // the middle, and the body's end toward the observer
-  };
-  PictureFrame& frame = out->frame;
-  std::vector<Extent> extents;
+/// Frames the body in every view with the same pixel size. Returns, per view, how far it reaches toward the observer.
+std::vector<double> frame_pictures(const Geometry& geometry, const std::vector<std::vector<RigidMotion>>& motions,
+                                   const std::vector<Vec3>& toward, const Vec3& reference, const PictureSize& size,
+                                   PictureFrame* frame) {
+  std::vector<double> nearest;
   double half_right = 0.0, half_up = 0.0;
-  for (std::size_t v = 0; v < out->views.size(); ++v) {
+  for (std::size_t v = 0; v < motions.size(); ++v) {
     double a, b, c, d, e, f;
-    body_extent(geometry, motions[v], point_of(frame.right[v]), &a, &b);
-    body_extent(geometry, motions[v], point_of(frame.up[v]), &c, &d);
-    const double* o = out->views[v].toward;
-    body_extent(geometry, motions[v], {{o[0], o[1], o[2]}}, &e, &f);
-    extents.push_back({0.5 * (a + b), 0.5 * (c + d), f});
+    body_extent(geometry, motions[v], point_of(frame->right[v]), &a, &b);
+    body_extent(geometry, motions[v], point_of(frame->up[v]), &c, &d);
+    body_extent(geometry, motions[v], point_of(toward[v]), &e, &f);
+    frame->middle_right_m.push_back(0.5 * (a + b));
+    frame->middle_up_m.push_back(0.5 * (c + d));
+    const vec3 origin = v3_of(reference);
+    frame->centre_right_m.push_back(frame->middle_right_m[v] - v3_dot(v3_of(frame->right[v]), origin));
+    frame->centre_up_m.push_back(frame->middle_up_m[v] - v3_dot(v3_of(frame->up[v]), origin));
+    nearest.push_back(f);
     half_right = std::max(half_right, 0.5 * (b - a));
     half_up = std::max(half_up, 0.5 * (d - c));
   }
   const double width = size.width, height = size.height;
-  frame.pixel_m = kPictureMargin * 2.0 * std::max({half_right / width, half_up / height, 1e-6 * geometry.radius});
+  frame->pixel_m = kPictureMargin * 2.0 * std::max({half_right / width, half_up / height, 1e-6 * geometry.radius});
+  return nearest;
+}
+
+/// Rays of pixels start just before the body; row 0 is on top.
+void pixel_rays(const Geometry& geometry, const PictureSize& size, const std::vector<double>& nearest, Beams* out) {
+  const PictureFrame& frame = out->frame;
+  const double width = size.width, height = size.height;
   for (std::size_t v = 0; v < out->views.size(); ++v) {
     ClrayView& view = out->views[v];
-    const vec3 right = v3_of(frame.right[v]), up = v3_of(frame.up[v]), origin = v3_of(reference);
+    const vec3 right = v3_of(frame.right[v]), up = v3_of(frame.up[v]);
     const vec3 o = v3(view.toward[0], view.toward[1], view.toward[2]);
-    frame.centre_right_m.push_back(extents[v].right - v3_dot(right, origin));
-    frame.centre_up_m.push_back(extents[v].up - v3_dot(up, origin));
-    const double left = extents[v].right - 0.5 * width * frame.pixel_m;
-    const double top = extents[v].up + 0.5 * height * frame.pixel_m;
-    const double start = extents[v].nearest + std::ldexp(geometry.radius, -4);
+    const double left = frame.middle_right_m[v] - 0.5 * width * frame.pixel_m;
+    const double top = frame.middle_up_m[v] + 0.5 * height * frame.pixel_m;
+    const double start = nearest[v] + std::ldexp(geometry.radius, -4);
     store(view.corner, v3_fma(left, right, v3_fma(top, up, v3_scale(start, o))));
     store(view.edge_u, v3_scale(width * frame.pixel_m, right));
     store(view.edge_v, v3_scale(-height * frame.pixel_m, up));
@@ -198,6 +204,7 @@ Beams build_beams(const Scene& scene, const Geometry& geometry, const PassReques
       !scene.trace.specialise || std::any_of(geometry.parts.begin(), geometry.parts.end(),
                                              [](const Part& part) { return part.hinged_component >= 0; });
   std::vector<std::vector<RigidMotion>> all_motions;
+  std::vector<Vec3> looks;  // toward the observer of a picture
   for (const Orientation& orientation : request.orientations) {
     const std::vector<RigidMotion> motions = motions_of(scene, geometry, orientation);
     const auto observer = static_cast<std::size_t>(request.observers.front());
@@ -210,7 +217,6 @@ Beams build_beams(const Scene& scene, const Geometry& geometry, const PassReques
     if (request.pixels) {
       const bool monostatic = at_source(scene.observers[observer], scene.source) && !scene.trace.force_bistatic;
       out.connections.push_back(connection_to(orientation.source, 0.0, !monostatic));
-      picture_axes(orientation, toward, &out.frame);
     } else {
       for (const int o : request.observers) {
         const Vec3& direction = orientation.observers[static_cast<std::size_t>(o)];
@@ -220,10 +226,15 @@ Beams build_beams(const Scene& scene, const Geometry& geometry, const PassReques
       }
       out.area_m2.push_back(beam_rectangle(geometry, motions, &view));
     }
+    looks.push_back(orientation.observers[observer]);
+    if (request.paints()) picture_axes(orientation, looks.back(), &out.frame);
     out.views.push_back(view);
     all_motions.push_back(motions);
   }
-  if (request.pixels) frame_pictures(geometry, all_motions, scene.reference_point, request.picture, &out);
+  if (!request.paints()) return out;
+  const std::vector<double> nearest =
+      frame_pictures(geometry, all_motions, looks, scene.reference_point, request.picture, &out.frame);
+  if (request.pixels) pixel_rays(geometry, request.picture, nearest, &out);
   return out;
 }
 

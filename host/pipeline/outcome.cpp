@@ -128,7 +128,7 @@ bool same_record(const ResultKey& a, const ResultKey& b) {
 
 std::vector<Target> targets_of(const PassPlan& plan, const Geometry& geometry, const Sums& sums) {
   std::vector<Target> targets;
-  if (plan.request.pixels) return targets;
+  if (plan.request.paints()) return targets;
   const SumReader read(plan, sums);
   for (const PassDetector& detector : plan.detectors) {
     if (!detector.asked) continue;

@@ -118,7 +118,22 @@ class Requests {
       r.picture.width = static_cast<std::uint32_t>(detector_value(spec, "width"));
       r.picture.height = static_cast<std::uint32_t>(detector_value(spec, "height"));
       r.picture.samples = static_cast<std::uint32_t>(detector_value(spec, "samples"));
+      const std::size_t first = requests_.size();
       add(r, lanes_together(spec, r.orientations.size()));
+      mirrors(first, requests_.size());
+    }
+  }
+
+  // Beside each pixel pass under mirrors (which go alone) one of the light that they send on.
+  void mirrors(std::size_t first, std::size_t end) {
+    for (std::size_t k = first; k < end; ++k) {
+      PassRequest r = requests_[k];
+      const Observer& observer = scene_.observers[static_cast<std::size_t>(r.observers.front())];
+      if (scene_.trace.max_bounces == 1 && !(observer.acceptance_rad > 0.0)) continue;
+      if (!build_surfaces(scene_, r.lanes).delta) continue;
+      r.pixels = false;
+      r.mirrors = true;
+      requests_.push_back(std::move(r));
     }
   }
 

@@ -82,10 +82,10 @@ ClrayPass constants_of(const Scene& scene, const PassPlan& plan) {
 
 std::vector<double> settings_of(const Scene& scene, const Geometry& geometry, const PassPlan& plan, const TableRow& row,
                                 int index) {
-  if (row.inner) return {};
+  const auto settings = room_of(row.id).settings;
+  if (row.inner && settings == nullptr) return {};
   const DetectorSpec plain{row.name, row.name, {}};
   const DetectorSpec& spec = index < 0 ? plain : scene.detectors[static_cast<std::size_t>(index)];
-  const auto settings = room_of(row.id).settings;
   return settings != nullptr ? settings({scene, spec, plan, geometry}) : row_values(row, spec.parameters);
 }
 
@@ -96,7 +96,7 @@ std::vector<PassDetector> detectors_of(const Scene& scene, const Geometry& geome
   std::vector<PassDetector> detectors;
   for (std::size_t r = 0; r < table("detector").size(); ++r) {
     const TableRow& row = table("detector")[r];
-    if (!(pixels ? row.pixel : row.beam)) continue;
+    if (!(pixels ? row.pixel : row.beam) || row.mirrors != plan.request.mirrors) continue;
     std::vector<int> indices;
     for (const int d : plan.request.detectors) {
       if (scene.detectors[static_cast<std::size_t>(d)].kind == row.name && !row.inner) indices.push_back(d);

@@ -32,17 +32,23 @@ struct PassRequest {
   std::size_t first_orientation = 0;      ///< where they stand in Result::orientations
   std::vector<Lane> lanes;
   std::vector<int>
-      observers;        ///< indices into Scene::observers: of a beam all it connects to, of pixels the one that looks
-  bool pixels = false;  ///< rays start at pixels, else at the beam
-  bool grid = false;    ///< the views are a grid of light directions of a detector's own
-  bool apart = false;   ///< it is traced under light of its own, beside others under the scene's
+      observers;         ///< indices into Scene::observers: of a beam all it connects to, of pixels the one that looks
+  bool pixels = false;   ///< rays start at pixels, else at the beam
+  bool mirrors = false;  ///< they start at the beam, and are followed from mirrors on: the rest of a picture
+  bool grid = false;     ///< the views are a grid of light directions of a detector's own
+  bool apart = false;    ///< it is traced under light of its own, beside others under the scene's
   PictureSize picture;
   std::uint32_t replicates = 16;
+
+  /// Whether its sums are those of a picture: two halves and no totals.
+  bool paints() const { return pixels || mirrors; }
 };
 
-/// How the pictures of a pass lie: axes per view, one pixel size, and the centre of each from the reference point.
+/// How the pictures of a pass lie: axes per view, one pixel size, and the centre of each, from the body's origin
+/// (middle) and from the reference point.
 struct PictureFrame {
   std::vector<Vec3> right, up;
+  std::vector<double> middle_right_m, middle_up_m;
   std::vector<double> centre_right_m, centre_up_m;
   double pixel_m = 0.0;
 };

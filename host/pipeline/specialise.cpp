@@ -147,6 +147,7 @@ class Specialiser {
 
   void sizes() {
     define("CLRAY_PIXELS", plan_.request.pixels ? 1 : 0);
+    define("CLRAY_MIRRORS_FIRST", plan_.request.mirrors ? 1 : 0);
     define("CLRAY_CONNECT", plan_.traits.connect ? 1 : 0);
     define("CLRAY_SOBOL", scene_.trace.sobol ? 1 : 0);
     define("CLRAY_LANES", plan_.request.lanes.size());

@@ -49,6 +49,7 @@ std::uint64_t picture_points(const PassPlan& plan, const TraceOptions& options) 
   } else if (options.target_error_percent > 0.0) {
     samples = 64.0;  // a picture's search for a target gives up there; `samples` or --rays ask for more
   }
+  if (plan.request.mirrors) samples *= static_cast<double>(size.width) * size.height;  // as many rays, from the light
   return power_of_two_above(static_cast<std::uint64_t>(std::max(1.0, std::ceil(samples / plan.request.replicates))));
 }
 
@@ -59,8 +60,8 @@ CourseRules rules_of(const PassPlan& plan, const TraceOptions& o) {
   rules.target = o.target_error_percent / 100.0;
   rules.enough_points = (kZeroRays + replicates - 1) / replicates;
   // A pixel's half-difference has one degree of freedom; a picture's error is the mean over all pixels and has many.
-  rules.t95 = plan.request.pixels ? 1.96 : student_t95(static_cast<int>(replicates) - 1);
-  if (plan.request.pixels) {
+  rules.t95 = plan.request.paints() ? 1.96 : student_t95(static_cast<int>(replicates) - 1);
+  if (plan.request.paints()) {
     rules.fixed_points = picture_points(plan, o);
     rules.fixed_end = o.rays != 0 || !rules.target_asked ? "rays" : "samples";
     // Large cubes take longer to read than to trace. Without a target three doublings show how the error falls.
@@ -84,19 +85,20 @@ CourseRules rules_of(const PassPlan& plan, const TraceOptions& o) {
   return rules;
 }
 
-/// The root mean square of the standard errors of all covered pixels, over their mean radiance.
+/// The root mean square of the standard errors of all covered pixels, over their mean radiance; in a pass of mirrors, of
+/// those that light reaches.
 double picture_error(const PassPlan& plan, const Sums& sums) {
   const std::uint64_t pixels = static_cast<std::uint64_t>(plan.request.picture.width) * plan.request.picture.height;
-  const PassDetector& detector = *find_detector(plan, "pixels");
+  const PassDetector& detector = *find_detector(plan, plan.request.pixels ? "pixels" : "caustics");
   const std::uint64_t radiance = plan.layout.blocks[detector.first_block].offset;
   const std::uint64_t covered = plan.layout.blocks[detector.first_block + 1].offset;
   const std::size_t lanes = plan.request.lanes.size();
   double squares = 0.0, mean = 0.0, count = 0.0;
   for (std::size_t row = 0; row < plan.beams.views.size() * lanes; ++row) {
     for (std::uint64_t p = 0; p < pixels; ++p) {
-      if (sums.counts[covered + row / lanes * pixels + p] == 0) continue;
       const std::uint64_t at = radiance + 2 * row * pixels + p;
       const double a = static_cast<double>(sums.values[at]), b = static_cast<double>(sums.values[at + pixels]);
+      if (plan.request.pixels ? sums.counts[covered + row / lanes * pixels + p] == 0 : a + b == 0.0) continue;
       mean += 0.5 * (a + b);
       squares += 0.25 * (a - b) * (a - b);
       count += 1.0;
@@ -143,7 +145,7 @@ class PassDriver {
     point.phase = step.phase;
     point.rays = static_cast<std::uint64_t>(static_cast<double>(sums.points) * rays_per_point());
     point.seconds = seconds;
-    if (plan_.request.pixels) {
+    if (plan_.request.paints()) {
       point.relative_standard_error = picture_error(plan_, sums);
     } else {
       largest_error(targets_of(plan_, geometry_, sums), &point);

@@ -114,7 +114,7 @@ double unseen_share(const PassPlan& plan, const Sums& sums) {
 
 std::vector<std::string> doubtful_claims(const PassPlan& plan, const Geometry& geometry, const Sums& sums) {
   std::vector<std::string> warnings;
-  if (plan.request.pixels) return warnings;
+  if (plan.request.paints()) return warnings;
   const std::string few = few_replicates(plan, geometry, sums);
   if (!few.empty()) warnings.push_back(few);
   const double rays = static_cast<double>(sums.points) * plan.request.replicates;
@@ -185,11 +185,18 @@ void warn_dark(Result* result) {
   painted.warn("black pictures: nothing that is seen was lit", &result->warnings);
 }
 
-bool has_mirrors(const Scene& scene) {
-  const auto mirror = [](const Material& m) { return table_row("brdf", m.model).delta; };
-  if (std::any_of(scene.materials.begin(), scene.materials.end(), mirror)) return true;
-  return std::any_of(scene.variants.begin(), scene.variants.end(),
-                     [&](const Variant& v) { return std::any_of(v.materials.begin(), v.materials.end(), mirror); });
+/// What no picture shows: light that comes by a mirror, and by a mirror leaves.
+void warn_unseen(Result* result) {
+  std::vector<std::string> known;
+  for (const ImageResult& i : result->image) {
+    const std::string name = label(i.key, "picture");
+    if (!(i.unseen_caustics_m2 > 0.0) || std::find(known.begin(), known.end(), name) != known.end()) continue;
+    known.push_back(name);
+    result->warnings.push_back(
+        fmt::format("light that mirrors throw on surfaces, which mirrors show, is not in the picture: {:.4g} m² of it "
+                    "leave in all directions ({}); give the observer acceptance_mrad",
+                    i.unseen_caustics_m2, name));
+  }
 }
 
 }  // namespace
@@ -209,11 +216,7 @@ void add_warnings(const Scene& scene, const Ending& ending, Result* result) {
   }
   if (result->diagnostics.above_window_fraction > 0.01 || result->diagnostics.below_window_fraction > 0.01)
     result->warnings.push_back("more than 1 % of a pulse lies outside the delay window");
-  if (!result->image.empty() && scene.trace.max_bounces > 1 && has_mirrors(scene))
-    result->warnings.push_back(
-        "pictures leave out the light that reaches a surface by way of mirrors, and do not know its share: compare "
-        "with "
-        "a spectrometer, which has it");
+  warn_unseen(result);
   if (result->target_asked && !result->target_reached) result->warnings.push_back(missed_target(scene, ending));
 }
 

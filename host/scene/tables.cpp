@@ -79,7 +79,7 @@ void parse_traits(const std::string& traits, TableRow* row) {
       {"delta", &TableRow::delta},       {"bounded", &TableRow::bounded},   {"flat", &TableRow::flat},
       {"file", &TableRow::file},         {"beam", &TableRow::beam},         {"pixel", &TableRow::pixel},
       {"connects", &TableRow::connects}, {"scatters", &TableRow::scatters}, {"inner", &TableRow::inner},
-      {"whole", &TableRow::whole}};
+      {"whole", &TableRow::whole},       {"mirrors", &TableRow::mirrors}};
   std::size_t at = 0;
   for (std::string word = next_word(traits, &at); !word.empty(); word = next_word(traits, &at)) {
     const auto trait = std::find_if(std::begin(known), std::end(known), [&](const auto& k) { return k.first == word; });

@@ -46,6 +46,7 @@ struct TableRow {
   bool beam = false, pixel = false;         ///< where rays may start
   bool connects = false, scatters = false;  ///< what it needs of paths
   bool inner = false;                       ///< no scene names it
+  bool mirrors = false;                     ///< alone in passes of light that meets a mirror first
   bool whole = false;                       ///< without bands it measures all the light of a sun
   std::vector<std::string> hooks;
   std::vector<TableSum> sums;

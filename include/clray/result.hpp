@@ -96,6 +96,9 @@ struct ImageResult {
   double pixel_m = 0.0;                               ///< edge of a pixel at the body
   Vec3 right{1, 0, 0}, up{0, 1, 0}, toward{0, 0, 1};  ///< image axes in the body frame
   double centre_right_m = 0.0, centre_up_m = 0.0;     ///< the picture's centre from the reference point, on those axes
+  /// Power over irradiance that leaves the body from mirrors toward no cone and is in no picture, after meeting a
+  /// mirror first: by mirrors alone, and with other surfaces between. The largest over the bands.
+  double unseen_mirrors_m2 = 0.0, unseen_caustics_m2 = 0.0;
   std::vector<Band> bands;
   std::vector<double> band_source_W_m2;
   std::vector<float> coverage;                ///< [y][x] share of the pixel covered by the body; row 0 on top

@@ -10,7 +10,9 @@
 #define CLRAY_DELAY_LARGEST 1u
 #define CLRAY_DELAY_HITS 2u
 
-static void detector_delay_connect(const Buffers* g, Tally* tally, u32 n, u32 c, const Light* weights, f64 length) {
+static void detector_delay_connect(const Buffers* g, Tally* tally, u32 n, u32 c, const Light* weights, f64 length,
+                                   vec3 point) {
+  (void)point;
   const u32 d = CLRAY_FIRST_delay + n;
   const __global f64* settings = g->settings + g->detectors[d].settings;
   const u32 bins = (u32)settings[0];

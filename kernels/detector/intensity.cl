@@ -4,7 +4,9 @@
 #ifndef CLRAY_DETECTOR_INTENSITY_CL
 #define CLRAY_DETECTOR_INTENSITY_CL
 
-static void detector_intensity_connect(const Buffers* g, Tally* tally, u32 n, u32 c, const Light* weights, f64 length) {
+static void detector_intensity_connect(const Buffers* g, Tally* tally, u32 n, u32 c, const Light* weights, f64 length,
+                                       vec3 point) {
+  (void)point;
   (void)n;
   const f64 scale = g->pass->weight_scale, limit = g->pass->weight_limit;
   for (u32 lane = 0; lane < CLRAY_LANES; ++lane) {

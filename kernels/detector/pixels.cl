@@ -13,7 +13,9 @@ static void detector_pixels_hit(const Buffers* g, Tally* tally, u32 n, u32 bounc
   if (bounce == 0u) ++tally->kept[CLRAY_KEPT_pixels_covered];
 }
 
-static void detector_pixels_connect(const Buffers* g, Tally* tally, u32 n, u32 c, const Light* weights, f64 length) {
+static void detector_pixels_connect(const Buffers* g, Tally* tally, u32 n, u32 c, const Light* weights, f64 length,
+                                    vec3 point) {
+  (void)point;
   (void)n;
   (void)c;
   (void)length;

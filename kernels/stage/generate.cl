@@ -31,6 +31,7 @@ static Ray stage_generate(const Buffers *g, Sampler *sampler, const Tally *tally
   path->product = light_even(1.0);
   path->density = light_even(1.0);
   path->delta = 0u;
+  path->mirrors = 0u;
   return ray;
 }
 

@@ -3,8 +3,8 @@
 // detector is one file, detector/<id>.cl, with a function for each hook that its row in detector.def names; this file
 // gives them what they add with, and calls them. Hooks that no detector of the scene has call nothing.
 //   hit      (g, tally, n, bounce, surface, path)        light that a path carries meets a surface
-//   connect  (g, tally, n, c, weights, length)           light toward connection c, on a path of `length` (m, relative
-//                                                        to the reference point)
+//   connect  (g, tally, n, c, weights, length, point)    light toward connection c from a point, on a path of `length`
+//                                                        (m, relative to the reference point)
 //   scatter  (g, tally, n, bounce, surface, path, s)     light goes on from a surface, or ends there
 //   escape   (g, tally, n, path, blind)                  it leaves the body; blind: from a mirror toward no cone at all
 //   end      (g, tally, n, path)                         it is cut off at the last bounce
@@ -56,9 +56,9 @@ static void record_hit(const Buffers *g, Tally *tally, u32 bounce, const Surface
 #undef CLRAY_DETECTOR_CASE
 }
 
-static void record_connect(const Buffers *g, Tally *tally, u32 c, const Light *weights, f64 length) {
+static void record_connect(const Buffers *g, Tally *tally, u32 c, const Light *weights, f64 length, vec3 point) {
 #define CLRAY_DETECTOR_CASE(id) \
-  for (u32 n = 0; n < CLRAY_COUNT_##id; ++n) detector_##id##_connect(g, tally, n, c, weights, length);
+  for (u32 n = 0; n < CLRAY_COUNT_##id; ++n) detector_##id##_connect(g, tally, n, c, weights, length, point);
   CLRAY_HOOK_connect(CLRAY_DETECTOR_CASE)
 #undef CLRAY_DETECTOR_CASE
 }

@@ -67,6 +67,8 @@ static Scattering stage_scatter(const Buffers *g, const Sampler *sampler, u32 bo
   f64 u[4];
   sampler_draw(sampler, g->directions, bounce + 1u, 0u, 4u, u);
   s.goes_on = scatter(g, u, bounce, surface, path, ray);
+  path->mirrors = (bounce == 0u || path->mirrors) && path->delta;
+  if (CLRAY_MIRRORS_FIRST && bounce == 0u && !path->mirrors) s.goes_on = 0u;
   s.roulette = u[3];
 #endif
   s.out = ray->d;

@@ -36,12 +36,13 @@ static i32 shade(const Buffers *g, const Surface *surface, const Path *path, u32
 /// The stage: records the light that each connection receives from a surface.
 static void stage_shade(const Buffers *g, Tally *tally, u32 bounce, const Surface *surface, const Path *path) {
 #if CLRAY_CONNECT
+  if (CLRAY_MIRRORS_FIRST && bounce == 0u) return;
   for (u32 c = 0; c < CLRAY_CONNECTIONS; ++c) {
     const __global ClrayConnection *connection = connection_of(g, tally, c);
     Light weights;
     if (!shade(g, surface, path, tally->view, bounce, connection, &weights)) continue;
     const f64 out = length_toward(g, surface->point, v3_load(connection->direction));
-    record_connect(g, tally, c, &weights, path->length - out);
+    record_connect(g, tally, c, &weights, path->length - out, surface->point);
   }
 #endif
 }
@@ -60,7 +61,7 @@ static u32 shade_mirror(const Buffers *g, Tally *tally, const Path *path, const 
     if (connection->acceptance_chord2 > 0.0) blind = 0u;
     if (!(v3_dot(chord, chord) <= connection->acceptance_chord2)) continue;
     const Light weights = light_scaled(&path->throughput, connection->inv_solid_angle);
-    record_connect(g, tally, c, &weights, path->length - length_toward(g, last->point, o));
+    record_connect(g, tally, c, &weights, path->length - length_toward(g, last->point, o), last->point);
   }
 #endif
   return blind;

@@ -57,6 +57,7 @@ typedef struct Path {
   Light product;     // f_l over the density of the hero
   Light density;     // p_l over the density of the hero
   u32 delta;         // the last reflection was ideal: only a cone connects it
+  u32 mirrors;       // all were
 } Path;
 
 /// What became of the light that a surface received.

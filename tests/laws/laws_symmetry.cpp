@@ -225,7 +225,8 @@ Trial hair(const Scene& scene) {
   return t;
 }
 
-/// What a picture's pixels send is what the observer receives, except by way of mirrors at the last or first bounce.
+/// What a picture's pixels send is what the observer receives. Not so under mirrors: what they show is in the picture
+/// as it is, in the beam's total through the cone.
 Trial pictured(const Scene& scene) {
   Trial t;
   t.law = "a picture's sum against the beam's total";

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pictures and cubes on the host: radiance over irradiance of every pixel and band, from the sums of the inner detector
-// `pixels`. The two replicates are halves: their difference is the error.
+// `pixels`, and what light that meets a mirror first adds to them, from those of `caustics`. The two replicates are
+// halves: their difference is the error.
 #include <algorithm>
 #include <cmath>
 
@@ -11,7 +12,7 @@
 namespace clray {
 namespace {
 
-enum { kRadiance, kCovered };  // blocks of `pixels`
+enum { kRadiance, kCovered, kUnseen = kCovered };  // blocks of `pixels` and of `caustics`
 
 ImageResult new_image(const RoomResults& x, const ResultKey& key, std::size_t v) {
   const PictureFrame& frame = x.plan.beams.frame;
@@ -47,24 +48,83 @@ void add_band(const RoomResults& x, std::size_t v, std::size_t l, ImageResult* i
   }
 }
 
+/// The picture of a view and lane so far; it holds all bands.
+std::vector<ImageResult>::iterator picture_of(const RoomResults& x, const ResultKey& key) {
+  return std::find_if(x.out.image.begin(), x.out.image.end(),
+                      [&](const ImageResult& known) { return same_record(known.key, key); });
+}
+
 void picture_results(const RoomResults& x) {
   for (std::size_t v = 0; v < x.plan.layout.shape.views; ++v) {
     for (std::size_t l = 0; l < x.plan.layout.shape.lanes; ++l) {
       ResultKey k = x.key(v, l, 0);
-      k.band.clear();  // a picture holds all of them
-      auto found = std::find_if(x.out.image.begin(), x.out.image.end(), [&](const ImageResult& known) {
-        return known.key.detector == k.detector && known.key.observer == k.observer && known.key.variant == k.variant &&
-               known.key.orientation == k.orientation;
-      });
+      k.band.clear();
+      auto found = picture_of(x, k);
       if (found == x.out.image.end()) found = x.out.image.insert(found, new_image(x, k, v));
       add_band(x, v, l, &*found);
     }
   }
 }
 
+/// Of each view: the axes, where the picture's left and top edges are on them, pixels per m.
+std::vector<double> caustics_settings(const RoomContext& x) {
+  const PictureFrame& frame = x.plan.beams.frame;
+  const PictureSize& size = x.plan.request.picture;
+  std::vector<double> settings;
+  for (std::size_t v = 0; v < frame.right.size(); ++v) {
+    for (const Vec3& axis : {frame.right[v], frame.up[v]}) settings.insert(settings.end(), {axis.x, axis.y, axis.z});
+    settings.push_back(frame.middle_right_m[v] - 0.5 * size.width * frame.pixel_m);
+    settings.push_back(frame.middle_up_m[v] + 0.5 * size.height * frame.pixel_m);
+    settings.push_back(1.0 / frame.pixel_m);
+  }
+  return settings;
+}
+
+/// Adds what a pass of mirrors found to a band of a picture: A of the light in a pixel over the pixel's area.
+void add_caustics(const RoomResults& x, std::size_t v, std::size_t l, ImageResult* image) {
+  const std::string& name = x.plan.request.lanes[l].band.name;
+  const auto band =
+      std::find_if(image->bands.begin(), image->bands.end(), [&](const Band& b) { return b.name == name; });
+  if (band == image->bands.end()) return;
+  const std::uint64_t pixels = image->coverage.size();
+  const std::uint64_t first = static_cast<std::uint64_t>(band - image->bands.begin()) * pixels;
+  const std::uint32_t block = x.detector.first_block;
+  const double area = image->pixel_m * image->pixel_m;
+  for (std::uint64_t p = 0; p < pixels; ++p) {
+    const double a = x.read.value(block + kRadiance, v, l, 0, 0, p) / area;
+    const double b = x.read.value(block + kRadiance, v, l, 0, 1, p) / area;
+    double& error = image->standard_error_per_sr[first + p];
+    image->radiance_per_sr[first + p] += 0.5 * (a + b);
+    error = std::hypot(error, 0.5 * (a - b));
+  }
+  double* const unseen[] = {&image->unseen_mirrors_m2, &image->unseen_caustics_m2};
+  for (std::uint64_t k = 0; k < 2; ++k) {
+    const double power =
+        0.5 * (x.read.value(block + kUnseen, v, l, 0, 0, k) + x.read.value(block + kUnseen, v, l, 0, 1, k));
+    *unseen[k] = std::max(*unseen[k], power);
+  }
+}
+
+void caustics_results(const RoomResults& x) {
+  const DetectorSpec& spec = x.scene.detectors[static_cast<std::size_t>(x.plan.request.detectors.front())];
+  for (std::size_t v = 0; v < x.plan.layout.shape.views; ++v) {
+    for (std::size_t l = 0; l < x.plan.layout.shape.lanes; ++l) {
+      ResultKey k = x.key(v, l, 0);
+      k.detector = spec.name.empty() ? spec.kind : spec.name;
+      k.band.clear();
+      const auto found = picture_of(x, k);
+      if (found != x.out.image.end()) add_caustics(x, v, l, &*found);
+    }
+  }
+}
+
+// A picture has no totals.
+void no_targets(const PassPlan&, const PassDetector&, const SumReader&, const Geometry&, std::vector<Target>*) {}
+
 }  // namespace
 
 const DetectorRoom kRgbRoom{"rgb", nullptr, nullptr, nullptr, picture_results};
+const DetectorRoom kCausticsRoom{"caustics", caustics_settings, nullptr, no_targets, caustics_results};
 const DetectorRoom kHyperspectralRoom{"hyperspectral", nullptr, nullptr, nullptr, picture_results};
 
 }  // namespace clray
