@@ -85,8 +85,8 @@ CourseRules rules_of(const PassPlan& plan, const TraceOptions& o) {
   return rules;
 }
 
-/// The root mean square of the standard errors of all covered pixels, over their mean radiance; in a pass of mirrors, of
-/// those that light reaches.
+/// The root mean square of the standard errors of all covered pixels, over their mean radiance; in a pass of mirrors,
+/// of those that light reaches.
 double picture_error(const PassPlan& plan, const Sums& sums) {
   const std::uint64_t pixels = static_cast<std::uint64_t>(plan.request.picture.width) * plan.request.picture.height;
   const PassDetector& detector = *find_detector(plan, plan.request.pixels ? "pixels" : "caustics");
