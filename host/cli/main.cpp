@@ -147,7 +147,7 @@ int trace_and_write(const cli::Arguments& arguments, const Scene& scene, Warning
   warnings.show(troubles);
   if (arguments.explain) print(cli::explanation(result));
   if (arguments.quiet) {
-    print("device: " + cli::device_line(result.device) + "\n" + cli::totals_line(result));
+    print("device: " + cli::device_line(result.device) + "\n" + describe_result(result).totals);
   } else {
     print(cli::closing_table(result, scene, folder, files, arguments.reference.empty() ? nullptr : &reference));
     if (!ranging->empty()) print("\n" + *ranging);

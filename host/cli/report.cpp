@@ -10,30 +10,12 @@
 #include <cmath>
 #include <cstdio>
 
-#include "clray/constants.hpp"
 #include "text/columns.hpp"
 
 namespace clray::cli {
 
-namespace {
-
 using text::characters;
 using text::Columns;
-
-std::string with_unit(const std::string& number, const char* unit) {
-  return number == "n/a" ? number : number + " " + unit;
-}
-
-std::string amount(const Estimate& e, double scale, const char* unit) {
-  return with_unit(format_with_error(e.value * scale, e.standard_error * scale), unit);
-}
-
-std::string percent_error(const Estimate& e) {
-  if (!(e.value != 0.0) || !std::isfinite(e.value)) return "n/a";
-  return fmt::format("{:.2g} %", 100.0 * 0.5 * (e.high - e.low) / std::fabs(e.value));
-}
-
-}  // namespace
 
 std::string short_count(double value) {
   if (value >= 1e9) return fmt::format("{:.3g} G", value * 1e-9);
@@ -112,119 +94,6 @@ std::string explanation(const Result& result) {
 
 namespace {
 
-std::string member(const ResultKey& key, std::size_t orientations) {
-  std::string name = key.detector;
-  for (const auto& part : {key.observer, key.variant, key.band}) {
-    if (!part.empty()) name += ", " + part;
-  }
-  if (orientations > 1) name += ", #" + std::to_string(key.orientation);
-  return name;
-}
-
-/// A table of more rows would not fit a screen; the files have all of them.
-constexpr std::size_t kMostRows = 12;
-
-std::string more_rows(std::size_t count) {
-  return count > kMostRows ? fmt::format("  … and {} more in the files\n", count - kMostRows) : "";
-}
-
-void one_pulse(Columns& table, const DelayResult& delay) {
-  const auto& a = delay.intensity_m2_per_sr;
-  table.add({"A", amount(a, 1.0, "m²/sr") + "   (95 %: ±" + percent_error(a) + ")"});
-  table.add({"cross-section", amount(a, 4.0 * constants::kPi, "m²")});
-  table.add({"mean delay", amount(delay.mean_delay_s, 1e9, "ns")});
-  table.add({"rms width", amount(delay.rms_width_s, 1e9, "ns")});
-}
-
-std::string many_pulses(const Result& result) {
-  Columns table;
-  table.add({"delay", "A (m²/sr)", "cross-section (m²)", "mean delay (ns)", "rms width (ns)"});
-  const auto number = [](const Estimate& e, double scale) {
-    return format_with_error(e.value * scale, e.standard_error * scale);
-  };
-  for (std::size_t i = 0; i < std::min(result.delay.size(), kMostRows); ++i) {
-    const auto& delay = result.delay[i];
-    table.add({member(delay.key, result.orientations.size()), number(delay.intensity_m2_per_sr, 1.0),
-               number(delay.intensity_m2_per_sr, 4.0 * constants::kPi), number(delay.mean_delay_s, 1e9),
-               number(delay.rms_width_s, 1e9)});
-  }
-  return "\n" + table.text("  ") + more_rows(result.delay.size());
-}
-
-std::string bands(const Result& result) {
-  if (result.spectrometer.empty()) return "";
-  Columns table;
-  table.add({"spectrometer", "band (nm)", "A (m²/sr)", "received (W/m²)", "AB magnitude", "phase angle (°)"});
-  for (std::size_t i = 0; i < std::min(result.spectrometer.size(), kMostRows); ++i) {
-    const auto& s = result.spectrometer[i];
-    ResultKey key = s.key;
-    key.band.clear();
-    const std::string magnitude = format_with_error(s.magnitude_AB, s.magnitude_standard_error);
-    const bool received = s.received_W_m2 > 0.0;
-    table.add({member(key, result.orientations.size()), fmt::format("{:g}-{:g}", s.band.low_nm, s.band.high_nm),
-               format_with_error(s.intensity_m2_per_sr.value, s.intensity_m2_per_sr.standard_error),
-               received ? format_with_error(s.received_W_m2, s.received_W_m2_standard_error) : "n/a (no range)",
-               magnitude, fmt::format("{:.4g}", s.phase_angle_rad * 180.0 / constants::kPi)});
-  }
-  return "\n" + table.text("  ") + more_rows(result.spectrometer.size());
-}
-
-double length(const Vec3& v) {
-  return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
-}
-
-/// Of many directions the range of |C| says more than the first rows.
-std::string force_span(const Result& result) {
-  double low = length(result.pressure.front().coefficient_m2.value), high = low;
-  for (const auto& p : result.pressure) {
-    low = std::min(low, length(p.coefficient_m2.value));
-    high = std::max(high, length(p.coefficient_m2.value));
-  }
-  return fmt::format("\n  pressure  {} directions: |C| = |F| c / E from {:.6g} to {:.6g} m²\n", result.pressure.size(),
-                     low, high);
-}
-
-std::string forces(const Result& result) {
-  constexpr double kSolarPressure = constants::kSolarConstant_W_m2 / constants::kLightSpeed_m_s;  // N/m²
-  if (result.pressure.empty()) return "";
-  if (result.pressure.size() > kMostRows / 3) return force_span(result);
-  Columns table;
-  table.add({"pressure", "", "x", "y", "z"});
-  const auto three = [&](const std::string& name, const char* what, const VectorEstimate& v, double scale) {
-    const auto cell = [&](int axis) {
-      return format_with_error(v.value[axis] * scale, v.standard_error[axis] * scale);
-    };
-    table.add({name, what, cell(0), cell(1), cell(2)});
-  };
-  for (const auto& p : result.pressure) {
-    three(member(p.key, result.orientations.size()), "force coefficient C (m²)", p.coefficient_m2, 1.0);
-    three("", "torque coefficient (m³)", p.torque_coefficient_m3, 1.0);
-    three("", "force at 1361 W/m² (N)", p.coefficient_m2, kSolarPressure);
-  }
-  return "\n" + table.text("  ");
-}
-
-/// "absorbed", or "absorbed 2" where the sum has several numbers.
-std::string number_name(const TableResult& sum, std::size_t k) {
-  return sum.values.size() > 1 ? sum.name + " " + std::to_string(k) : sum.name;
-}
-
-/// Sums that are results by themselves, in the units of their detectors' rows.
-std::string sums(const Result& result) {
-  if (result.table.empty()) return "";
-  Columns table;
-  table.add({"detector", "sum", "value"});
-  std::size_t count = 0;
-  for (const TableResult& sum : result.table) {
-    for (std::size_t k = 0; k < sum.values.size(); ++k) {
-      if (++count > kMostRows) continue;
-      table.add({k == 0 ? member(sum.key, result.orientations.size()) : "", number_name(sum, k),
-                 amount(sum.values[k], 1.0, sum.unit.c_str()) + "   (95 %: ±" + percent_error(sum.values[k]) + ")"});
-    }
-  }
-  return "\n" + table.text("  ") + more_rows(count);
-}
-
 std::string file_list(const std::vector<std::string>& files) {
   std::string list;
   for (std::size_t i = 0; i < std::min<std::size_t>(files.size(), 12); ++i) list += (i ? ", " : "") + files[i];
@@ -242,32 +111,6 @@ std::string target_row(const Result& result) {
 }
 
 }  // namespace
-
-std::string totals_line(const Result& result) {
-  std::string text;
-  for (const auto& delay : result.delay) {
-    text += member(delay.key, result.orientations.size()) + ": A = " + amount(delay.intensity_m2_per_sr, 1.0, "m²/sr") +
-            "\n";
-  }
-  for (const auto& s : result.spectrometer) {
-    text += member(s.key, result.orientations.size()) + ": A = " + amount(s.intensity_m2_per_sr, 1.0, "m²/sr") + "\n";
-  }
-  for (const auto& p : result.pressure) {
-    text += member(p.key, result.orientations.size()) + ": C =";
-    for (int axis = 0; axis < 3; ++axis) {
-      text +=
-          (axis ? ", " : " ") + format_with_error(p.coefficient_m2.value[axis], p.coefficient_m2.standard_error[axis]);
-    }
-    text += " m²\n";
-  }
-  for (const TableResult& sum : result.table) {
-    for (std::size_t k = 0; k < sum.values.size(); ++k) {
-      text += member(sum.key, result.orientations.size()) + ": " + number_name(sum, k) + " = " +
-              amount(sum.values[k], 1.0, sum.unit.c_str()) + "\n";
-    }
-  }
-  return text;
-}
 
 std::string closing_table(const Result& result, const Scene& scene, const std::string& folder,
                           const std::vector<std::string>& files, const Reference* reference) {
@@ -287,18 +130,17 @@ std::string closing_table(const Result& result, const Scene& scene, const std::s
   table.add({"time", fmt::format("{} (load {}, BVH {}, compile {}, trace {})", short_time(s.total), short_time(s.load),
                                  short_time(s.bvh), short_time(s.compile), short_time(s.trace))});
   if (result.target_asked) table.add({"target", target_row(result)});
-  if (result.delay.size() == 1) one_pulse(table, result.delay.front());
+  const ResultText text = describe_result(result);
+  for (const auto& row : text.rows) table.add({row.first, row.second});
   if (reference) {
     const double error = relative_true_error(result, *reference);
     table.add({"true error", std::isfinite(error) ? fmt::format("{:.3g} % against {}", 100.0 * error, reference->file)
                                                   : "n/a: " + reference->file + " has none of these totals"});
   }
   table.add({"digest", fmt::format("{:016x}", result.digest)});
-  const std::string more =
-      (result.delay.size() > 1 ? many_pulses(result) : "") + bands(result) + forces(result) + sums(result);
   const std::string list = folder + "/: " + file_list(files);
-  if (more.empty()) table.add({"files", list});
-  return table.text("  ") + (more.empty() ? "" : more + "\n  files  " + list + "\n");
+  if (text.tables.empty()) table.add({"files", list});
+  return table.text("  ") + (text.tables.empty() ? "" : text.tables + "\n  files  " + list + "\n");
 }
 
 }  // namespace clray::cli

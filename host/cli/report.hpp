@@ -35,7 +35,5 @@ std::string explanation(const Result& result);
 /// The closing table. `reference` may be null.
 std::string closing_table(const Result& result, const Scene& scene, const std::string& folder,
                           const std::vector<std::string>& files, const Reference* reference);
-/// The totals alone, for --quiet.
-std::string totals_line(const Result& result);
 
 }  // namespace clray::cli

@@ -66,8 +66,8 @@ std::vector<std::string_view> split(std::string_view line) {
   return cells;
 }
 
-/// The total is that of the comment line, which includes what lies outside the window. Without such a line it is the
-/// sum of the bins.
+/// The total is that of the comment line if there is one (it knows what lies outside the window), else the sum of the
+/// bins.
 Reference from_table(const std::string& file, const std::string& text) {
   constexpr std::string_view kTotal = "# total_m2_per_sr: ";
   std::vector<double> delay, density;
@@ -125,7 +125,7 @@ double relative_true_error(const Result& result, const Reference& reference) {
   for (const auto& total : io::totals(result)) {
     const double wanted = wanted_total(total, first, reference);
     first = false;
-    // A zero that should be zero has no error.
+    // A zero that was expected to be zero has no error.
     const double error = total.value == wanted ? 0.0 : std::fabs(total.value - wanted) / std::fabs(wanted);
     if (!std::isnan(error) && !(error <= largest)) largest = error;
   }
@@ -140,29 +140,6 @@ std::string total_path(const Total& total) {
       key.detector + "/" + key.observer + "/" + key.variant + "/" + key.band + "/" + std::to_string(key.orientation);
   if (!total.sum.empty()) path += "/" + total.sum + "/" + std::to_string(total.number);
   return path;
-}
-
-std::vector<Total> totals(const Result& result) {
-  std::vector<Total> all;
-  for (const auto& delay : result.delay) {
-    all.push_back({delay.key, delay.intensity_m2_per_sr.value, delay.intensity_m2_per_sr.standard_error, "m2/sr"});
-  }
-  for (const auto& band : result.spectrometer) {
-    all.push_back({band.key, band.intensity_m2_per_sr.value, band.intensity_m2_per_sr.standard_error, "m2/sr"});
-  }
-  for (const auto& pressure : result.pressure) {
-    const Vec3 c = pressure.coefficient_m2.value, e = pressure.coefficient_m2.standard_error;
-    const double length = std::sqrt(c.x * c.x + c.y * c.y + c.z * c.z);
-    // The correlation of the components is not known; the sum of their shares bounds the error of the length.
-    const double error =
-        length > 0.0 ? (std::fabs(c.x) * e.x + std::fabs(c.y) * e.y + std::fabs(c.z) * e.z) / length : 0.0;
-    all.push_back({pressure.key, length, error, "m2"});
-  }
-  for (const auto& sum : result.table) {
-    for (std::size_t k = 0; k < sum.values.size(); ++k)
-      all.push_back({sum.key, sum.values[k].value, sum.values[k].standard_error, sum.unit, sum.name, k});
-  }
-  return all;
 }
 
 double first_reference_total(const Result& result, const Reference& reference) {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "clray/error.hpp"
+#include "io/detector/room.hpp"
 #include "text/text.hpp"
 
 namespace clray::io {
@@ -32,11 +33,16 @@ std::string Writer::scene_name() const {
   return scene.name.empty() ? "scene" : scene.name;
 }
 
-std::string Writer::kind_of(const ResultKey& key) const {
+const DetectorSpec* Writer::detector_of(const ResultKey& key) const {
   for (const auto& detector : scene.detectors) {
-    if ((detector.name.empty() ? detector.kind : detector.name) == key.detector) return detector.kind;
+    if (shown_name(detector) == key.detector) return &detector;
   }
-  return key.detector;
+  return nullptr;
+}
+
+std::string Writer::kind_of(const ResultKey& key) const {
+  const DetectorSpec* detector = detector_of(key);
+  return detector != nullptr ? detector->kind : key.detector;
 }
 
 std::string Writer::stem(const std::string& first, const ResultKey& key, bool of_band) {
@@ -89,11 +95,7 @@ std::vector<std::string> write_result(const Result& result, const Scene& scene, 
   io::Writer writer{result, scene, options, place, options.reference_file.empty() ? nullptr : &reference, {}, {}, {}};
   for (const char* own : {"error", "summary"}) writer.names.reserve(own);
   try {
-    io::write_delay(writer);
-    io::write_spectrometer(writer);
-    io::write_pressure(writer);
-    io::write_images(writer);
-    io::write_sums(writer);
+    for (const io::RecordRoom* room : io::record_rooms()) room->files(writer);
     io::write_error(writer);
     std::vector<MoreFiles> more;
     for (const auto& write_more : options.more) {

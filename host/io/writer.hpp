@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the writers of one result share, and the writers themselves: one call per kind of file.
+// What the writers of one result share. The files of each kind of record are written in its room (detector/room.hpp).
 #pragma once
 
 #include <string>
@@ -39,7 +39,9 @@ struct Writer {
   std::string stem(const std::string& first, const ResultKey& key, bool of_band = false);
   /// Words for titles: scene, detector if named, observer, variant.
   std::string title(const std::string& kind, const ResultKey& key) const;
-  /// Kind of the detector named in a key.
+  /// The detector named in a key, or null.
+  const DetectorSpec* detector_of(const ResultKey& key) const;
+  /// Its kind.
   std::string kind_of(const ResultKey& key) const;
 };
 
@@ -101,18 +103,12 @@ struct Total {
 };
 /// "detector/observer/variant/band/orientation", or "…/sum/number": the key of Reference::totals.
 std::string total_path(const Total& total);
-/// All totals: of delay, then spectrometer, then |C| of pressure, then every number of sums that are results by
-/// themselves.
+/// All totals, in the order of the rooms.
 std::vector<Total> totals(const Result& result);
 /// What `reference` says of the result's first total; NaN if nothing.
 double first_reference_total(const Result& result, const Reference& reference);
 
-void write_delay(Writer& writer);
 void write_error(Writer& writer);
-void write_spectrometer(Writer& writer);
-void write_pressure(Writer& writer);
-void write_images(Writer& writer);
-void write_sums(Writer& writer);
 void write_summary(Writer& writer, const std::vector<MoreFiles>& more);
 
 }  // namespace clray::io

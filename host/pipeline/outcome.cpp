@@ -79,7 +79,7 @@ void add_counters(const Sums& sums, Result* out) {
 class Places {
  public:
   explicit Places(const Scene& scene) {
-    for (const DetectorSpec& d : scene.detectors) detectors_.push_back(d.name.empty() ? d.kind : d.name);
+    for (const DetectorSpec& d : scene.detectors) detectors_.push_back(shown_name(d));
     for (const Observer& o : scene.observers) observers_.push_back(o.name);
     for (const Variant& v : scene.variants) variants_.push_back(v.name);
     for (const Lane& lane : lanes_of(scene)) bands_.push_back(lane.band_name);
@@ -109,7 +109,7 @@ ResultKey RoomResults::key(std::size_t v, std::size_t l, std::size_t c) const {
 
 ResultKey RoomResults::key(std::size_t v, std::size_t l) const {
   ResultKey k;
-  if (detector.index >= 0) k.detector = spec().name.empty() ? spec().kind : spec().name;
+  if (detector.index >= 0) k.detector = shown_name(spec());
   k.variant = plan.request.lanes[l].variant;
   k.band = plan.request.lanes[l].band_name;
   k.orientation = plan.request.first_orientation + v;

@@ -16,4 +16,9 @@ struct DetectorSpec {
   std::map<std::string, double> parameters;
 };
 
+/// What results call a detector: its name, or its kind where it has none.
+inline const std::string& shown_name(const DetectorSpec& detector) {
+  return detector.name.empty() ? detector.kind : detector.name;
+}
+
 }  // namespace clray

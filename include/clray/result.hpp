@@ -10,6 +10,7 @@
 #include <limits>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "clray/device.hpp"
@@ -36,7 +37,7 @@ struct VectorEstimate {
 
 /// Which member of a run a record belongs to; empty names where there is only one.
 struct ResultKey {
-  std::string detector;  ///< DetectorSpec::name
+  std::string detector;  ///< its shown_name()
   std::string observer;
   std::string variant;
   std::string band;
@@ -134,9 +135,8 @@ struct ErrorPoint {
   double seconds = 0.0;                  ///< of tracing, from the phase's start
   double relative_standard_error = 0.0;  ///< the largest over all targets; NaN if all totals are zero
   double first_total =
-      std::numeric_limits<double>::quiet_NaN();  ///< the first total of the result, in its unit:
-                                                 ///< of delay, else spectrometer, else |C| of pressure; NaN if not kept
-  double first_standard_error = std::numeric_limits<double>::quiet_NaN();  ///< of first_total; of |C|, along C
+      std::numeric_limits<double>::quiet_NaN();  ///< of the result, in its unit (of a vector its length); NaN: not kept
+  double first_standard_error = std::numeric_limits<double>::quiet_NaN();  ///< of first_total; of a vector, along it
 };
 
 /// Failures are counted, never hidden. All are zero in a sound run.
@@ -225,6 +225,15 @@ Reference load_reference(const std::string& file);
 
 /// The largest |total − reference| / |reference| over the totals that both have; NaN where they share none.
 double relative_true_error(const Result& result, const Reference& reference);
+
+/// What a person wants to see of a result first, as UTF-8 text.
+struct ResultText {
+  std::vector<std::pair<std::string, std::string>>
+      rows;            ///< of a single record: what, and its value with error and unit
+  std::string tables;  ///< of all others, each behind an empty line
+  std::string totals;  ///< a line for each record or number
+};
+ResultText describe_result(const Result& result);
 
 /// "1.2345 ± 0.0012": a number rounded to two digits of its error, in powers of ten where that reads better.
 std::string format_with_error(double value, double error);

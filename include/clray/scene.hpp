@@ -46,7 +46,7 @@ struct Material {
   std::map<std::string, Spectrum> spectra;   ///< keys given as spectra; they override `parameters`
   bool two_sided = true;                     ///< false: the back reflects nothing
   std::shared_ptr<const BrdfTable> table;    ///< for "tabulated"
-  /// Infrared (thermal) reflectance in [0,1]; used by `pressure` with thermal re-radiation only.
+  /// Infrared (thermal) reflectance in [0,1]; used by thermal re-radiation only.
   double infrared_reflectance = 0.0;
 };
 

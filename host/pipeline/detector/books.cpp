@@ -17,8 +17,7 @@ EnergyBooks books_of(const RoomResults& x, const LaneRecord& record) {
   e.key.variant = x.plan.request.lanes[record.first].variant;
   e.key.band = x.plan.request.lanes[record.first].band_name;
   if (x.plan.request.apart) {
-    const DetectorSpec& owner = x.scene.detectors[static_cast<std::size_t>(x.plan.request.detectors.front())];
-    e.key.detector = owner.name.empty() ? owner.kind : owner.name;
+    e.key.detector = shown_name(x.scene.detectors[static_cast<std::size_t>(x.plan.request.detectors.front())]);
   }
   Estimate* entries[CLRAY_BOOKS] = {&e.incident_m2, &e.reflected_m2, &e.absorbed_m2,
                                     &e.roulette_m2, &e.truncated_m2, &e.unconnected_specular_m2};

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one-pixel spectrometer's files: spectrum.csv/.png (per band), and for several orientations
+// The one-pixel spectrometer in files and on the terminal: spectrum.csv/.png (per band), and for several orientations
 // lightcurve.csv/.png (per time). Intensities in m²/sr, received flux in W/m², AB magnitudes (zero point 3631 Jy).
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
 
 #include "clray/constants.hpp"
-#include "io/writer.hpp"
+#include "io/detector/room.hpp"
+#include "io/detector/words.hpp"
+#include "io/summary_entries.hpp"
 #include "text/text.hpp"
 
 namespace clray::io {
@@ -22,7 +26,7 @@ std::string band_name(const SpectrometerResult& record) {
   return !name.empty() ? name : rounded(record.band.low_nm, 6) + "-" + rounded(record.band.high_nm, 6);
 }
 
-/// The name, with nm behind it if it is a range of wavelengths.
+/// The name with its unit where it is a range of wavelengths.
 std::string band_label(const SpectrometerResult& record) {
   const std::string name = band_name(record);
   return name.find_first_not_of("0123456789.-") == std::string::npos ? name + " nm" : name;
@@ -158,8 +162,6 @@ void spectrum_picture(Writer& writer, const Group& group, const std::string& ste
   writer.draw(plot, name);
 }
 
-}  // namespace
-
 void write_spectrometer(Writer& writer) {
   for (const auto& group : groups(writer.result.spectrometer)) {
     const ResultKey& key = group.front()->key;
@@ -176,5 +178,53 @@ void write_spectrometer(Writer& writer) {
     if (writer.options.plots) lightcurve_picture(writer, bands, lightcurve);
   }
 }
+
+Json spectrometer_entry(const SpectrometerResult& record) {
+  return {{"low_nm", record.band.low_nm},
+          {"high_nm", record.band.high_nm},
+          {"intensity_m2_per_sr", record.intensity_m2_per_sr.value},
+          {"standard_error", record.intensity_m2_per_sr.standard_error},
+          {"confidence_95", {record.intensity_m2_per_sr.low, record.intensity_m2_per_sr.high}},
+          {"relative_variance_of_variance", record.intensity_m2_per_sr.relative_variance_of_variance},
+          {"source_W_m2", record.source_W_m2},
+          {"received_W_m2", record.received_W_m2},
+          {"received_standard_error", record.received_W_m2_standard_error},
+          {"magnitude_AB", record.magnitude_AB},
+          {"magnitude_standard_error", record.magnitude_standard_error},
+          {"phase_angle_deg", record.phase_angle_rad * 180.0 / constants::kPi}};
+}
+
+void spectrometer_summary(SummaryEntries& entries) {
+  entries.add(entries.writer.result.spectrometer, spectrometer_entry);
+}
+
+void spectrometer_totals(const Result& result, std::vector<Total>* all) {
+  for (const auto& s : result.spectrometer)
+    all->push_back({s.key, s.intensity_m2_per_sr.value, s.intensity_m2_per_sr.standard_error, "m2/sr"});
+}
+
+void show_spectrometer(const Result& result, ResultText* text) {
+  if (result.spectrometer.empty()) return;
+  Columns table;
+  table.add({"spectrometer", "band (nm)", "A (m²/sr)", "received (W/m²)", "AB magnitude", "phase angle (°)"});
+  for (std::size_t i = 0; i < std::min(result.spectrometer.size(), kMostRows); ++i) {
+    const auto& s = result.spectrometer[i];
+    ResultKey key = s.key;
+    key.band.clear();
+    const std::string magnitude = format_with_error(s.magnitude_AB, s.magnitude_standard_error);
+    const bool received = s.received_W_m2 > 0.0;
+    table.add({record_name(key, result), fmt::format("{:g}-{:g}", s.band.low_nm, s.band.high_nm),
+               scaled(s.intensity_m2_per_sr, 1.0),
+               received ? format_with_error(s.received_W_m2, s.received_W_m2_standard_error) : "n/a (no range)",
+               magnitude, fmt::format("{:.4g}", s.phase_angle_rad * constants::kDegrees)});
+  }
+  text->tables += "\n" + table.text("  ") + more_rows(result.spectrometer.size());
+  for (const auto& s : result.spectrometer)
+    text->totals += record_name(s.key, result) + ": A = " + amount(s.intensity_m2_per_sr, 1.0, "m²/sr") + "\n";
+}
+
+}  // namespace
+
+const RecordRoom kSpectrometerRecords{write_spectrometer, spectrometer_summary, spectrometer_totals, show_spectrometer};
 
 }  // namespace clray::io

@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// Radiation pressure's files: pressure.csv (a row per Sun direction or orientation) and pressure.png (a map over
-// azimuth and elevation where there are many directions, curves over time for a motion); files for each band where
-// there are several. Coefficients C = F c / E in m², torques about the reference point in m³, body frame.
+// Radiation pressure in files and on the terminal: pressure.csv (a row per Sun direction or orientation) and
+// pressure.png (a map over azimuth and elevation where there are many directions, curves over time for a motion); files
+// for each band where there are several. Coefficients C = F c / E in m², torques about the reference point in m³, body
+// frame.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
 
 #include "clray/constants.hpp"
-#include "io/writer.hpp"
+#include "io/detector/room.hpp"
+#include "io/detector/words.hpp"
+#include "io/summary_entries.hpp"
 #include "text/text.hpp"
 
 namespace clray::io {
@@ -68,7 +73,7 @@ long micro(double degrees) {
   return std::lround(degrees * 1e6);
 }
 
-/// The group's directions, by elevation, then azimuth. A pole has one azimuth, and its value fills the row.
+/// The group's directions by elevation, then azimuth; a pole, which has one azimuth, fills its row.
 std::vector<Spot> spots_of(const Group& group) {
   std::vector<Spot> spots;
   std::map<long, double> azimuths;
@@ -101,7 +106,7 @@ bool even_grid(const std::vector<Spot>& spots) {
   return columns > 1 && rows > 1 && columns * rows == spots.size();
 }
 
-/// A map of |C|: tiles for a grid that is regular in both angles, points for any other set of directions.
+/// Map of |C|; a grid that is regular in both angles becomes tiles, any other set of directions points.
 void map_picture(Writer& writer, const Group& group, const std::string& stem) {
   const std::vector<Spot> spots = spots_of(group);
   const bool tiles = even_grid(spots);
@@ -157,8 +162,6 @@ bool one_instant(const Writer& writer, const Group& group) {
                      [&](const auto* record) { return time_of(writer.result, record->key) == first; });
 }
 
-}  // namespace
-
 void write_pressure(Writer& writer) {
   for (const auto& group : groups_by_band(writer.result.pressure)) {
     const ResultKey& key = group.front()->key;
@@ -172,5 +175,95 @@ void write_pressure(Writer& writer) {
     }
   }
 }
+
+Json pressure_entry(const PressureResult& record, const Scene& scene) {
+  const auto& c = record.coefficient_m2;
+  const auto& t = record.torque_coefficient_m3;
+  Json entry{{"sun", vector(record.sun)},
+             {"low_nm", record.band.low_nm},
+             {"high_nm", record.band.high_nm},
+             {"source_W_m2", record.source_W_m2},
+             {"force_N_per_W_m2", vector(c.value, 1.0 / constants::kLightSpeed_m_s)},
+             {"force_standard_error", vector(c.standard_error, 1.0 / constants::kLightSpeed_m_s)},
+             {"torque_Nm_per_W_m2", vector(t.value, 1.0 / constants::kLightSpeed_m_s)},
+             {"torque_standard_error", vector(t.standard_error, 1.0 / constants::kLightSpeed_m_s)},
+             {"force_N_at_1361_W_m2", vector(c.value, constants::kSolarConstant_W_m2 / constants::kLightSpeed_m_s)},
+             {"torque_Nm_at_1361_W_m2", vector(t.value, constants::kSolarConstant_W_m2 / constants::kLightSpeed_m_s)},
+             {"coefficient_m2", vector(c.value)},
+             {"coefficient_standard_error", vector(c.standard_error)},
+             {"coefficient_relative_variance_of_variance", vector(c.relative_variance_of_variance)},
+             {"torque_coefficient_m3", vector(t.value)},
+             {"torque_coefficient_standard_error", vector(t.standard_error)},
+             {"torque_coefficient_relative_variance_of_variance", vector(t.relative_variance_of_variance)},
+             {"absorbed_m2", value_and_error(record.absorbed_m2)}};
+  for (std::size_t i = 0; i < record.component_m2.size(); ++i) {
+    Json share{{"name", i < scene.components.size() ? scene.components[i].name : ""},
+               {"coefficient_m2", vector(record.component_m2[i].value)},
+               {"coefficient_standard_error", vector(record.component_m2[i].standard_error)}};
+    if (i < record.component_m3.size()) {
+      share["torque_coefficient_m3"] = vector(record.component_m3[i].value);
+      share["torque_coefficient_standard_error"] = vector(record.component_m3[i].standard_error);
+    }
+    entry["components"].push_back(share);
+  }
+  return entry;
+}
+
+void pressure_summary(SummaryEntries& entries) {
+  entries.add(entries.writer.result.pressure,
+              [&](const PressureResult& record) { return pressure_entry(record, entries.writer.scene); });
+}
+
+void pressure_totals(const Result& result, std::vector<Total>* all) {
+  for (const auto& pressure : result.pressure) {
+    const Vec3 c = pressure.coefficient_m2.value, e = pressure.coefficient_m2.standard_error;
+    const double size = length(c);
+    // Components are correlated in an unknown way: the sum of their shares bounds the error of the length.
+    const double error = size > 0.0 ? (std::fabs(c.x) * e.x + std::fabs(c.y) * e.y + std::fabs(c.z) * e.z) / size : 0.0;
+    all->push_back({pressure.key, size, error, "m2"});
+  }
+}
+
+/// Of many directions the range of |C| says more than the first rows.
+std::string force_span(const Result& result) {
+  double low = length(result.pressure.front().coefficient_m2.value), high = low;
+  for (const auto& p : result.pressure) {
+    low = std::min(low, length(p.coefficient_m2.value));
+    high = std::max(high, length(p.coefficient_m2.value));
+  }
+  return fmt::format("\n  pressure  {} directions: |C| = |F| c / E from {:.6g} to {:.6g} m²\n", result.pressure.size(),
+                     low, high);
+}
+
+std::string force_table(const Result& result) {
+  Columns table;
+  table.add({"pressure", "", "x", "y", "z"});
+  const auto three = [&](const std::string& name, const char* what, const VectorEstimate& v, double scale) {
+    const auto cell = [&](int axis) {
+      return format_with_error(v.value[axis] * scale, v.standard_error[axis] * scale);
+    };
+    table.add({name, what, cell(0), cell(1), cell(2)});
+  };
+  for (const auto& p : result.pressure) {
+    three(record_name(p.key, result), "force coefficient C (m²)", p.coefficient_m2, 1.0);
+    three("", "torque coefficient (m³)", p.torque_coefficient_m3, 1.0);
+    three("", "force at 1361 W/m² (N)", p.coefficient_m2, constants::kSolarConstant_W_m2 / constants::kLightSpeed_m_s);
+  }
+  return "\n" + table.text("  ");
+}
+
+void show_pressure(const Result& result, ResultText* text) {
+  if (result.pressure.empty()) return;
+  text->tables += result.pressure.size() > kMostRows / 3 ? force_span(result) : force_table(result);
+  for (const auto& p : result.pressure) {
+    const Vec3 &c = p.coefficient_m2.value, &e = p.coefficient_m2.standard_error;
+    text->totals += fmt::format("{}: C = {}, {}, {} m²\n", record_name(p.key, result), format_with_error(c.x, e.x),
+                                format_with_error(c.y, e.y), format_with_error(c.z, e.z));
+  }
+}
+
+}  // namespace
+
+const RecordRoom kPressureRecords{write_pressure, pressure_summary, pressure_totals, show_pressure};
 
 }  // namespace clray::io

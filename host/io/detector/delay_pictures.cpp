@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// The delay camera's files: delay.csv (one row per bin), delay.png (the pulse with its error band), and for several
-// orientations delay-totals.csv and delay.fits (orientation x bin); with several bands, files for each. Delays in ns,
-// densities in m²/sr per ns.
+// See delay_pictures.hpp.
+#include "io/detector/delay_pictures.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 #include "clray/constants.hpp"
-#include "io/fits_file.hpp"
-#include "io/writer.hpp"
 #include "text/text.hpp"
 
 namespace clray::io {
+
+std::string delay_title(const Writer& writer, const ResultKey& key) {
+  return writer.title("delay", key) + (key.band.empty() ? "" : ", " + key.band + " nm");
+}
 
 namespace {
 
@@ -20,105 +22,7 @@ double at(const std::vector<double>& values, std::size_t i) {
   return i < values.size() ? values[i] : std::nan("");
 }
 
-std::string title_of(const Writer& writer, const ResultKey& key) {
-  return writer.title("delay", key) + (key.band.empty() ? "" : ", " + key.band + " nm");
-}
-
-void delay_row(TableFile& table, const DelayResult& delay, std::size_t bin, bool photons) {
-  const double width_ns = delay.bin_width_s * 1e9;
-  table.cell((delay.first_bin_start_s + (static_cast<double>(bin) + 0.5) * delay.bin_width_s) * 1e9);
-  table.cell(delay.bin_m2_per_sr[bin] / width_ns).cell(at(delay.bin_standard_error, bin) / width_ns);
-  table.cell(bin < delay.hits.size() ? delay.hits[bin] : std::uint64_t{0});
-  const bool resolved = bin < delay.resolved.size() && delay.resolved[bin];
-  table.cell(std::uint64_t{resolved});
-  table.cell(resolved ? std::nan("") : at(delay.bin_upper_bound, bin) / width_ns);
-  if (photons) table.cell(at(delay.photons_per_ns, bin));
-  table.end_row();
-}
-
-void delay_table(Writer& writer, const Group& group, const std::string& stem) {
-  const bool several = group.size() > 1, photons = !group.front()->photons_per_ns.empty();
-  auto table = writer.table(writer.add(stem, "csv"), "delay histogram A(t) of " + title_of(writer, group.front()->key),
-                            "delay_ns: bin centres, ns after a path by way of the reference point; "
-                            "intensity, standard_error and upper_bound: m^2/sr per ns" +
-                                std::string(photons ? "; photons_per_ns: expected at the station" : ""));
-  if (!several) {
-    const auto& delay = *group.front();
-    table.comment("total_m2_per_sr: " + number(delay.intensity_m2_per_sr.value) + " with standard error " +
-                  number(delay.intensity_m2_per_sr.standard_error) + ", of which below the first bin " +
-                  number(delay.below_m2_per_sr) + " and above the last " + number(delay.above_m2_per_sr));
-  }
-  table.comment("resolved: 0 where a bin was hit too seldom for its error to be trusted; it gets a 95 % upper_bound");
-  std::vector<std::string> columns{"delay_ns",   "intensity_m2_per_sr_per_ns", "standard_error", "hits", "resolved",
-                                   "upper_bound"};
-  if (photons) columns.push_back("photons_per_ns");
-  if (several) columns.insert(columns.begin(), {"orientation", "time_s"});
-  table.columns(columns);
-  for (const auto* delay : group) {
-    for (std::size_t bin = 0; bin < delay->bin_m2_per_sr.size(); ++bin) {
-      if (several) table.cell(std::uint64_t{delay->key.orientation}).cell(time_of(writer.result, delay->key));
-      delay_row(table, *delay, bin, photons);
-    }
-  }
-  table.close();
-}
-
-void totals_table(Writer& writer, const Group& group, const std::string& stem) {
-  auto table = writer.table(
-      writer.add(stem + "-totals", "csv"), "totals per orientation of " + title_of(writer, group.front()->key),
-      "time s; intensity m^2/sr; cross-section m^2; delays ns; low and high bound the 95 % interval");
-  table.columns({"orientation", "time_s", "intensity_m2_per_sr", "standard_error", "low", "high", "cross_section_m2",
-                 "mean_delay_ns", "mean_delay_standard_error_ns", "rms_width_ns", "rms_width_standard_error_ns"});
-  for (const auto* delay : group) {
-    const auto& a = delay->intensity_m2_per_sr;
-    table.cell(std::uint64_t{delay->key.orientation}).cell(time_of(writer.result, delay->key));
-    table.cell(a.value).cell(a.standard_error).cell(a.low).cell(a.high).cell(4.0 * constants::kPi * a.value);
-    table.cell(delay->mean_delay_s.value * 1e9).cell(delay->mean_delay_s.standard_error * 1e9);
-    table.cell(delay->rms_width_s.value * 1e9).cell(delay->rms_width_s.standard_error * 1e9);
-    table.end_row();
-  }
-  table.close();
-}
-
-bool same_bins(const Group& group) {
-  return std::all_of(group.begin(), group.end(), [&](const DelayResult* delay) {
-    return delay->bin_m2_per_sr.size() == group.front()->bin_m2_per_sr.size() &&
-           delay->first_bin_start_s == group.front()->first_bin_start_s &&
-           delay->bin_width_s == group.front()->bin_width_s;
-  });
-}
-
-void delay_fits(Writer& writer, const Group& group, const std::string& stem) {
-  const auto& first = *group.front();
-  const std::size_t bins = first.bin_m2_per_sr.size();
-  const double width_ns = first.bin_width_s * 1e9;
-  std::vector<double> values, errors;
-  FitsColumn index{"ORIENTATION", "", {}, {}}, time{"TIME", "s", {}, {}}, total{"INTENSITY", "m2 sr-1", {}, {}},
-      error{"STANDARD_ERROR", "m2 sr-1", {}, {}};
-  for (const auto* delay : group) {
-    for (std::size_t bin = 0; bin < bins; ++bin) {
-      values.push_back(delay->bin_m2_per_sr[bin] / width_ns);
-      errors.push_back(at(delay->bin_standard_error, bin) / width_ns);
-    }
-    index.numbers.push_back(static_cast<double>(delay->key.orientation));
-    time.numbers.push_back(time_of(writer.result, delay->key));
-    total.numbers.push_back(delay->intensity_m2_per_sr.value);
-    error.numbers.push_back(delay->intensity_m2_per_sr.standard_error);
-  }
-  const std::vector<FitsAxis> axes{{static_cast<long>(bins), "DELAY", "ns", 1.0,
-                                    (first.first_bin_start_s + 0.5 * first.bin_width_s) * 1e9, width_ns},
-                                   {static_cast<long>(group.size()), "ORIENTATION", "", 1.0, 0.0, 1.0}};
-  FitsFile file(writer.folder.path(writer.add(stem, "fits")));
-  file.image("DELAY", "m2 sr-1 ns-1", axes, values);
-  file.history("clray " CLRAY_VERSION ": delay histograms A(t), one row per orientation");
-  file.history("scene " + (writer.scene.path.empty() ? writer.scene.name : writer.scene.path));
-  file.history("seed " + std::to_string(writer.result.seed) + ", digest " + hex16(writer.result.digest));
-  file.image("STANDARD_ERROR", "m2 sr-1 ns-1", axes, errors);
-  file.table("ORIENTATIONS", {index, time, total, error});
-  file.close();
-}
-
-/// A histogram no finer than a picture can show. The error of joined bins is the mean of theirs: its upper limit, since
+/// A histogram no finer than a picture can show. Errors of joined bins are averaged, their upper limit, since
 /// neighbouring bins may be correlated.
 struct Curve {
   double start = 0.0, width = 0.0;  ///< plot units
@@ -157,7 +61,7 @@ double highest(const Curve& curve) {
   return high;
 }
 
-/// The upper axis, for a round trip: depth along the line of sight, which is half the delay times c.
+/// Depth along the line of sight on the upper axis, where the round trip makes it half the delay.
 void depth_axis(Plot& plot, double per_second, double start, double end) {
   const double m_per_unit = 0.5 * constants::kLightSpeed_m_s / per_second;
   plot.line("set border 7; set xtics nomirror");
@@ -172,8 +76,8 @@ bool monostatic(const Writer& writer, const ResultKey& key) {
   return false;
 }
 
-/// The lower end of the axis of A. It is 0, or, if one bright line would press the rest flat, a positive number below
-/// the faint part: the axis is then logarithmic.
+/// Where the axis of A begins: 0, or, where one bright line would press the rest flat, a positive number below the
+/// faint part, for a logarithmic axis.
 double axis_floor(const Curve& curve) {
   std::vector<double> lit;
   for (const double value : curve.value) {
@@ -199,7 +103,7 @@ void pulse_data(Plot& plot, const Curve& curve, double floor) {
   plot.end_data();
 }
 
-/// Draws unresolved bins as boxes up to their bound; returns whether there are any.
+/// Unresolved bins as boxes up to their bound; returns whether there are any.
 bool bound_data(Plot& plot, const Curve& curve) {
   plot.begin_data("bound");
   bool any = false;
@@ -212,7 +116,9 @@ bool bound_data(Plot& plot, const Curve& curve) {
   return any;
 }
 
-void pulse_picture(Writer& writer, const DelayResult& delay, const std::string& stem) {
+}  // namespace
+
+void delay_pulse_picture(Writer& writer, const DelayResult& delay, const std::string& stem) {
   const auto& a = delay.intensity_m2_per_sr;
   const double window_s = delay.bin_width_s * static_cast<double>(delay.bin_m2_per_sr.size());
   const TimeUnit unit = readable_time_unit(window_s);
@@ -226,7 +132,7 @@ void pulse_picture(Writer& writer, const DelayResult& delay, const std::string& 
   const auto estimate = [&](const Estimate& e, double scale) {
     return format_with_error(e.value * scale, e.standard_error * scale);
   };
-  plot.line("set label 1 " + gnuplot_text(title_of(writer, delay.key)) +
+  plot.line("set label 1 " + gnuplot_text(delay_title(writer, delay.key)) +
             " at screen 0.54, 0.97 center font ',19' textcolor '#000000'");
   plot.line("set label 2 " +
             gnuplot_text("A = " + estimate(a, 1.0) + " m²/sr    σ = " + estimate(a, 4.0 * constants::kPi) +
@@ -261,6 +167,8 @@ void pulse_picture(Writer& writer, const DelayResult& delay, const std::string& 
   writer.draw(plot, name);
 }
 
+namespace {
+
 /// Whether the orientations follow each other in equal steps of time.
 bool even_times(const Writer& writer, const Group& group) {
   const double first = time_of(writer.result, group.front()->key);
@@ -272,7 +180,9 @@ bool even_times(const Writer& writer, const Group& group) {
   return step > 0.0;
 }
 
-void map_picture(Writer& writer, const Group& group, const std::string& stem) {
+}  // namespace
+
+void delay_map_picture(Writer& writer, const std::vector<const DelayResult*>& group, const std::string& stem) {
   const auto& first = *group.front();
   const TimeUnit unit = readable_time_unit(first.bin_width_s * static_cast<double>(first.bin_m2_per_sr.size()));
   const bool by_time = even_times(writer, group);
@@ -292,7 +202,7 @@ void map_picture(Writer& writer, const Group& group, const std::string& stem) {
   }
   plot.end_data();
   plot.line("set title " +
-            gnuplot_text(title_of(writer, first.key) + ": " + std::to_string(group.size()) + " orientations") +
+            gnuplot_text(delay_title(writer, first.key) + ": " + std::to_string(group.size()) + " orientations") +
             " font ',18'");
   plot.line(by_time ? "set xlabel 'time (s)'" : "set xlabel 'orientation'");
   plot.line("set ylabel 'delay after a path by way of the reference point (" + std::string(unit.name) + ")'");
@@ -302,26 +212,6 @@ void map_picture(Writer& writer, const Group& group, const std::string& stem) {
       "screen 0.92");
   plot.line("plot $map using 1:2:3 with image");
   writer.draw(plot, name);
-}
-
-}  // namespace
-
-void write_delay(Writer& writer) {
-  for (const auto& group : groups_by_band(writer.result.delay)) {
-    const ResultKey& key = group.front()->key;
-    const std::string stem = writer.stem("delay", key, true);
-    delay_table(writer, group, stem);
-    if (group.size() > 1) {
-      totals_table(writer, group, stem);
-      if (same_bins(group)) delay_fits(writer, group, stem);
-    }
-    if (!writer.options.plots) continue;
-    if (group.size() > 1 && same_bins(group)) {
-      map_picture(writer, group, stem);
-    } else {
-      pulse_picture(writer, *group.front(), stem);
-    }
-  }
 }
 
 }  // namespace clray::io

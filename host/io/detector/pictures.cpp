@@ -6,9 +6,10 @@
 
 #include "clray/constants.hpp"
 #include "io/colour.hpp"
+#include "io/detector/room.hpp"
 #include "io/fits_file.hpp"
 #include "io/picture_file.hpp"
-#include "io/writer.hpp"
+#include "io/summary_entries.hpp"
 #include "text/file_names.hpp"
 #include "text/text.hpp"
 
@@ -110,12 +111,10 @@ Linear contact_sheet(const std::vector<Linear>& frames) {
 }
 
 double exposure_ev(const Writer& writer, const ResultKey& key) {
-  for (const auto& detector : writer.scene.detectors) {
-    if ((detector.name.empty() ? detector.kind : detector.name) != key.detector) continue;
-    const auto found = detector.parameters.find("exposure_ev");
-    if (found != detector.parameters.end()) return found->second;
-  }
-  return 0.0;
+  const DetectorSpec* detector = writer.detector_of(key);
+  if (detector == nullptr) return 0.0;
+  const auto found = detector->parameters.find("exposure_ev");
+  return found != detector->parameters.end() ? found->second : 0.0;
 }
 
 /// Stem with the orientation's number where there are several.
@@ -243,8 +242,6 @@ void write_cube(Writer& writer, const Group& group, std::size_t i) {
   file.close();
 }
 
-}  // namespace
-
 void write_images(Writer& writer) {
   for (const auto& group : groups(writer.result.image)) {
     if (writer.kind_of(group.front()->key) == "rgb") {
@@ -254,5 +251,40 @@ void write_images(Writer& writer) {
     }
   }
 }
+
+Json image_entry(const ImageResult& image) {
+  Json bands = Json::array();
+  for (std::size_t b = 0; b < image.bands.size(); ++b) {
+    bands.push_back(
+        {{"name", image.bands[b].name}, {"low_nm", image.bands[b].low_nm}, {"high_nm", image.bands[b].high_nm}});
+    if (b < image.band_source_W_m2.size()) bands.back()["source_W_m2"] = image.band_source_W_m2[b];
+  }
+  return {{"width", image.width},
+          {"height", image.height},
+          {"pixel_m", image.pixel_m},
+          {"centre_right_m", image.centre_right_m},
+          {"centre_up_m", image.centre_up_m},
+          {"right", vector(image.right)},
+          {"up", vector(image.up)},
+          {"toward", vector(image.toward)},
+          {"unseen_mirrors_m2", image.unseen_mirrors_m2},
+          {"unseen_caustics_m2", image.unseen_caustics_m2},
+          {"bands", bands}};
+}
+
+void image_summary(SummaryEntries& entries) {
+  entries.add(entries.writer.result.image, [&](const ImageResult& image) {
+    Json entry = image_entry(image);
+    if (entries.writer.kind_of(image.key) == "rgb") {
+      entry["exposure"] = "a white Lambert plate square to the light has luminance 1, then exposure_ev stops";
+      entry["exposure_ev"] = exposure_ev(entries.writer, image.key);
+    }
+    return entry;
+  });
+}
+
+}  // namespace
+
+const RecordRoom kPictureRecords{write_images, image_summary};
 
 }  // namespace clray::io

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the records of one kind add to "detectors" in summary.json: keyed by detector, then observer, variant and band
+// where there are several; lists "orientations" where there are several of these.
+#pragma once
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "io/writer.hpp"
+#include "text/text.hpp"
+
+namespace clray::io {
+
+using Json = nlohmann::ordered_json;
+
+inline Json vector(const Vec3& v, double scale = 1.0) {
+  return Json::array({v.x * scale, v.y * scale, v.z * scale});
+}
+
+inline Json value_and_error(const Estimate& estimate) {
+  return {{"value", estimate.value},
+          {"standard_error", estimate.standard_error},
+          {"confidence_95", {estimate.low, estimate.high}},
+          {"relative_variance_of_variance", estimate.relative_variance_of_variance}};
+}
+
+class SummaryEntries {
+ public:
+  explicit SummaryEntries(const Writer& w) : writer(w) {}
+
+  /// Adds what `entry` makes of each record. Single records stand for themselves, those of several orientations form a
+  /// list; what a place holds already stays.
+  template <class Record, class Entry>
+  void add(const std::vector<Record>& records, Entry entry) {
+    for (const auto& group : groups(records)) add_group(group, entry);
+  }
+
+  const Writer& writer;
+  Json detectors = Json::object();
+
+ private:
+  template <class Record, class Entry>
+  void add_group(const std::vector<const Record*>& group, Entry entry) {
+    Json& place = place_of(group.front()->key);
+    std::set<std::size_t> orientations;
+    for (const auto* record : group) orientations.insert(record->key.orientation);
+    const bool several =
+        orientations.size() > 1 || (group.size() > 1 && group.front()->key.band == group.back()->key.band);
+    std::map<std::string, std::size_t> listed;  // records so far, by band
+    for (const auto* record : group) {
+      const ResultKey& key = record->key;
+      if (several) {
+        Json& list = key.band.empty() ? place["orientations"] : place["bands"][one_line(key.band)]["orientations"];
+        Json& numbered = list[listed[key.band]++];
+        put(numbered, {{"orientation", key.orientation}, {"time_s", time_of(writer.result, key)}});
+        put(numbered, entry(*record));
+      } else {
+        put(key.band.empty() ? place : place["bands"][one_line(key.band)], entry(*record));
+      }
+    }
+  }
+
+  Json& place_of(const ResultKey& key) {
+    Json* place = &detectors[one_line(key.detector)];
+    if (!key.observer.empty()) place = &(*place)[one_line(key.observer)];
+    if (!key.variant.empty()) place = &(*place)[one_line(key.variant)];
+    return *place;
+  }
+
+  static void put(Json& place, Json entry) { place.is_null() ? void(place = std::move(entry)) : place.update(entry); }
+};
+
+}  // namespace clray::io
