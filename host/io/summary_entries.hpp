@@ -31,8 +31,8 @@ class SummaryEntries {
  public:
   explicit SummaryEntries(const Writer& w) : writer(w) {}
 
-  /// Adds what `entry` makes of each record. Single records stand for themselves, those of several orientations form a
-  /// list; what a place holds already stays.
+  /// Adds what `entry` makes of each record. A single record stands by itself; records of several orientations form a
+  /// list. What a place holds already stays.
   template <class Record, class Entry>
   void add(const std::vector<Record>& records, Entry entry) {
     for (const auto& group : groups(records)) add_group(group, entry);

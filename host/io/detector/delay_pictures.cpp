@@ -22,7 +22,7 @@ double at(const std::vector<double>& values, std::size_t i) {
   return i < values.size() ? values[i] : std::nan("");
 }
 
-/// A histogram no finer than a picture can show. Errors of joined bins are averaged, their upper limit, since
+/// A histogram no finer than a picture can show. The error of joined bins is the mean of theirs: its upper limit, since
 /// neighbouring bins may be correlated.
 struct Curve {
   double start = 0.0, width = 0.0;  ///< plot units
@@ -61,7 +61,7 @@ double highest(const Curve& curve) {
   return high;
 }
 
-/// Depth along the line of sight on the upper axis, where the round trip makes it half the delay.
+/// The upper axis, for a round trip: depth along the line of sight, which is half the delay times c.
 void depth_axis(Plot& plot, double per_second, double start, double end) {
   const double m_per_unit = 0.5 * constants::kLightSpeed_m_s / per_second;
   plot.line("set border 7; set xtics nomirror");
@@ -76,8 +76,8 @@ bool monostatic(const Writer& writer, const ResultKey& key) {
   return false;
 }
 
-/// Where the axis of A begins: 0, or, where one bright line would press the rest flat, a positive number below the
-/// faint part, for a logarithmic axis.
+/// The lower end of the axis of A. It is 0, or, if one bright line would press the rest flat, a positive number below
+/// the faint part: the axis is then logarithmic.
 double axis_floor(const Curve& curve) {
   std::vector<double> lit;
   for (const double value : curve.value) {
@@ -103,7 +103,7 @@ void pulse_data(Plot& plot, const Curve& curve, double floor) {
   plot.end_data();
 }
 
-/// Unresolved bins as boxes up to their bound; returns whether there are any.
+/// Draws unresolved bins as boxes up to their bound; returns whether there are any.
 bool bound_data(Plot& plot, const Curve& curve) {
   plot.begin_data("bound");
   bool any = false;

@@ -73,7 +73,7 @@ long micro(double degrees) {
   return std::lround(degrees * 1e6);
 }
 
-/// The group's directions by elevation, then azimuth; a pole, which has one azimuth, fills its row.
+/// The group's directions, by elevation, then azimuth. A pole has one azimuth, and its value fills the row.
 std::vector<Spot> spots_of(const Group& group) {
   std::vector<Spot> spots;
   std::map<long, double> azimuths;
@@ -106,7 +106,7 @@ bool even_grid(const std::vector<Spot>& spots) {
   return columns > 1 && rows > 1 && columns * rows == spots.size();
 }
 
-/// Map of |C|; a grid that is regular in both angles becomes tiles, any other set of directions points.
+/// A map of |C|: tiles for a grid that is regular in both angles, points for any other set of directions.
 void map_picture(Writer& writer, const Group& group, const std::string& stem) {
   const std::vector<Spot> spots = spots_of(group);
   const bool tiles = even_grid(spots);
@@ -155,7 +155,7 @@ void time_picture(Writer& writer, const Group& group, const std::string& stem) {
   writer.draw(plot, name);
 }
 
-/// A grid of Sun directions belongs to one instant, whatever the body does; a motion has a time per orientation.
+/// Whether all records are of one time, as those of a grid of Sun directions are; those of a motion are not.
 bool one_instant(const Writer& writer, const Group& group) {
   const double first = time_of(writer.result, group.front()->key);
   return std::all_of(group.begin(), group.end(),
@@ -218,7 +218,7 @@ void pressure_totals(const Result& result, std::vector<Total>* all) {
   for (const auto& pressure : result.pressure) {
     const Vec3 c = pressure.coefficient_m2.value, e = pressure.coefficient_m2.standard_error;
     const double size = length(c);
-    // Components are correlated in an unknown way: the sum of their shares bounds the error of the length.
+    // The correlation of the components is not known; the sum of their shares bounds the error of the length.
     const double error = size > 0.0 ? (std::fabs(c.x) * e.x + std::fabs(c.y) * e.y + std::fabs(c.z) * e.z) / size : 0.0;
     all->push_back({pressure.key, size, error, "m2"});
   }

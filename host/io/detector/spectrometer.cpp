@@ -26,7 +26,7 @@ std::string band_name(const SpectrometerResult& record) {
   return !name.empty() ? name : rounded(record.band.low_nm, 6) + "-" + rounded(record.band.high_nm, 6);
 }
 
-/// The name with its unit where it is a range of wavelengths.
+/// The name, with nm behind it if it is a range of wavelengths.
 std::string band_label(const SpectrometerResult& record) {
   const std::string name = band_name(record);
   return name.find_first_not_of("0123456789.-") == std::string::npos ? name + " nm" : name;

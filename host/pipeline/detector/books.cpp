@@ -35,7 +35,7 @@ EnergyBooks books_of(const RoomResults& x, const LaneRecord& record) {
 }
 
 void books_results(const RoomResults& x) {
-  if (x.plan.request.pixels) return;  // their rays are not the light's
+  if (x.plan.request.pixels) return;  // rays from pixels carry no light
   for (const LaneRecord& record : lane_records(x.plan.request.lanes)) {
     EnergyBooks e = books_of(x, record);
     if (e.incident_m2.value > 0.0) {
@@ -54,7 +54,7 @@ void books_results(const RoomResults& x) {
   }
 }
 
-// No target of a run is about the books.
+// The books have no total that a target could be about.
 void no_targets(const PassPlan&, const PassDetector&, const SumReader&, const Geometry&, std::vector<Target>*) {}
 
 }  // namespace

@@ -28,8 +28,8 @@ enum { kSettingBins = 0, kSettingFirst = 1, kSettingPerMetre = 2, kSettingBin = 
   throw Error(ErrorCode::input, what, "detector " + spec.name);
 }
 
-/// Bins, then first edge (m), bins per metre and width (m) of each connection. The automatic window is the extent of
-/// one bounce and a margin, one for all orientations.
+/// Bins, then first edge (m), bins per metre and width (m) of each connection. The automatic window holds all delays of
+/// one bounce and a margin; it is the same for all orientations.
 std::vector<double> delay_settings(const RoomContext& x) {
   double bins = detector_value(x.spec, "bins");
   const double asked_bins = bins;
@@ -163,7 +163,7 @@ void delay_results(const RoomResults& x) {
   }
 }
 
-/// What delay and spectrometer say to a run's target is A of every connection.
+/// The totals of delay and spectrometer for a run's target: A of every connection.
 void intensity_targets(const PassPlan& plan, const PassDetector&, const SumReader& read, const Geometry&,
                        std::vector<Target>* targets) {
   const SumShape& shape = plan.layout.shape;

@@ -41,8 +41,8 @@ struct RoomResults {
   ResultKey key(std::size_t v, std::size_t l) const;
   /// The band that this detector has of a lane: where surfaces know no wavelength, lanes stand for those of several.
   Band band(std::size_t l) const;
-  /// Of records so far the one of this key that `record`, part of a band, adds to; null where it is the first, or
-  /// whole.
+  /// The earlier record of this key to which `record`, part of a band, is added; null if `record` is the first, or a
+  /// whole band.
   template <class Record>
   Record* known(std::vector<Record>& records, const ResultKey& key, const LaneRecord& record) const {
     if (!(plan.request.lanes[record.first].share < 1.0)) return nullptr;
