@@ -14,7 +14,7 @@
 #include "shape/shape.h"
 #include "generated/shape_all.inc"
 #include "shape/dispatch.cl"
-#include "math/bvh_walk.cl"
+#include "generated/walk_all.inc"
 #include "stage/state.cl"
 #include "stage/generate.cl"
 #include "stage/intersect.cl"

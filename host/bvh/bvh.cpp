@@ -230,10 +230,10 @@ class Builder {
       if (k >= children.size()) continue;
       const BinaryNode& child = binary_[children[k]];
       if (child.count != 0) {
-        node.child[k] = child.first << 4 | child.count;
+        node.child[k] = node_child(child.first, child.count);
       } else {
         inner[k] = static_cast<std::uint32_t>(tree_.nodes.size());
-        node.child[k] = inner[k] << 4;
+        node.child[k] = node_child(inner[k], 0);
         tree_.nodes.emplace_back();
       }
     }
@@ -267,6 +267,18 @@ void Box::add(const Box& box) {
 
 LinearBvh build_bvh(const std::vector<Box>& boxes) {
   return Builder(boxes).build();
+}
+
+void append_tree(const LinearBvh& tree, std::uint32_t first_leaf, std::vector<ClrayNode>* nodes) {
+  const auto first_node = static_cast<std::uint32_t>(nodes->size());
+  for (ClrayNode node : tree.nodes) {
+    for (std::uint32_t& child : node.child) {
+      if (child == CLRAY_NO_CHILD) continue;
+      const std::uint32_t count = child_count(child);
+      child = node_child(child_index(child) + (count != 0 ? first_leaf : first_node), count);
+    }
+    nodes->push_back(node);
+  }
 }
 
 }  // namespace clray

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The linear BVH: built on the host from fp64 bounds, flattened to ClrayNode (shared/abi.h), walked by
-// kernels/math/bvh_walk.cl. Knows no OpenCL and no shapes. Everything about the layout (four children a node, leaves of
+// The linear BVH: built on the host from fp64 bounds, flattened to ClrayNode (shared/bvh_node.h), walked by
+// kernels/walk. Knows no OpenCL and no shapes. Everything about the layout (four children a node, leaves of
 // at most kLeafPrimitives) stays behind this interface.
 #pragma once
 
@@ -38,11 +38,15 @@ struct LinearBvh {
 };
 
 constexpr std::uint32_t kLeafPrimitives = 4;
+static_assert(kLeafPrimitives <= CLRAY_LEAF_LARGEST);
 
 /// Builds a tree over `boxes` (at least one) by binned SAH: Wald (2007), "On fast construction of SAH-based bounding
 /// volume hierarchies"; 16 bins. Below depth 40 it splits at the median, which bounds the depth at 40 + log2(n) even
 /// for coincident boxes. Chosen over Morton order because satellites mix very long and very small triangles, which
 /// Morton order groups badly; pairs of levels are then merged into nodes of four. Same boxes, same tree, on any host.
 LinearBvh build_bvh(const std::vector<Box>& boxes);
+
+/// Appends a tree to *nodes, where its root then stands first; its leaves' positions count from `first_leaf`.
+void append_tree(const LinearBvh& tree, std::uint32_t first_leaf, std::vector<ClrayNode>* nodes);
 
 }  // namespace clray

@@ -15,14 +15,16 @@ namespace {
 struct Table {
   const char* name;    // folder and .def file
   const char* prefix;  // of its macros
-  const std::vector<int> ProgramOptions::*used;
+  std::vector<int> (*used)(const ProgramOptions&);
 };
 
 constexpr const char* kNotDispatched = "triangle";  // meshes have a traversal of their own
 
-const Table kTables[] = {{"brdf", "BRDF", &ProgramOptions::brdfs},
-                         {"shape", "SHAPE", &ProgramOptions::shapes},
-                         {"detector", "DETECTOR", &ProgramOptions::detectors}};
+const Table kTables[] = {
+    {"brdf", "BRDF", [](const ProgramOptions& options) { return options.brdfs; }},
+    {"shape", "SHAPE", [](const ProgramOptions& options) { return options.shapes; }},
+    {"detector", "DETECTOR", [](const ProgramOptions& options) { return options.detectors; }},
+    {"walk", "WALK", [](const ProgramOptions& options) { return std::vector<int>{options.walk}; }}};
 
 std::string once_macro(const std::string& path) {
   std::string name = "CLRAY_ONCE_" + path;
@@ -35,7 +37,8 @@ std::string once_macro(const std::string& path) {
 /// The ids of the used rows, in the table's order.
 std::vector<std::string> used_ids(const Table& table, const ProgramOptions& options, const KernelFiles& files) {
   const auto ids = table_row_ids(table.name, files);
-  std::set<int> rows((options.*table.used).begin(), (options.*table.used).end());
+  const std::vector<int> numbers = table.used(options);
+  const std::set<int> rows(numbers.begin(), numbers.end());
   std::vector<std::string> used;
   for (const int row : rows) {
     if (row < 0 || row >= static_cast<int>(ids.size())) {
@@ -66,11 +69,6 @@ class Flattener {
     }
     out_ += "#pragma OPENCL FP_CONTRACT OFF\n";
     for (const auto& [name, value] : options_.defines) out_ += fmt::format("#define {} {}\n", name, value);
-    for (const auto& table : kTables) {
-      for (const auto& id : used_ids(table, options_, files_)) {
-        out_ += fmt::format("#define CLRAY_HAS_{}_{} 1\n", table.prefix, id);
-      }
-    }
   }
 
   /// `conditional`: inside an #if that is not the file's own guard, so the text may not reach the compiler.
@@ -164,7 +162,7 @@ std::vector<std::string> table_row_ids(const std::string& table, const KernelFil
   const std::string path = fmt::format("{0}/{0}.def", table);
   const auto file = files.find(path);
   if (file == files.end()) return {};
-  static const std::regex row(R"(^\s*(?:BRDF|SHAPE|DETECTOR)\(\s*(\w+)\s*,.*)");
+  static const std::regex row(R"(^\s*(?:BRDF|SHAPE|DETECTOR|WALK)\(\s*(\w+)\s*,.*)");
   std::vector<std::string> ids;
   std::istringstream lines(file->second);
   for (std::string line; std::getline(lines, line);) {

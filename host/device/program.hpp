@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // From kernel files to a built program: includes resolved among the embedded files, #line so that a compile error
 // names the true file and line, options as one sorted name -> value map (the #defines, and the cache's key), and
-// only the rows of the tables (brdf.def, shape.def, detector.def) that a scene uses compiled.
+// only the rows of the tables (brdf.def, shape.def, detector.def, walk.def) that a scene uses compiled.
 #pragma once
 
 #include <map>
@@ -17,19 +17,20 @@ namespace clray {
 struct ProgramOptions {
   std::map<std::string, std::string> defines;  ///< emitted as `#define name value` at the top
   std::vector<int> brdfs, shapes, detectors;   ///< row numbers used, in any order
+  int walk = 0;                                ///< row number of the walk
   bool warnings_are_errors = false;            ///< also switched on by the environment's CLRAY_KERNEL_WERROR
 };
 
 /// Kernel files by their path under kernels/.
 using KernelFiles = std::map<std::string, std::string>;
 
-/// The ids of a table's rows in their order (`table` is "brdf", "shape" or "detector").
+/// The ids of a table's rows in their order (`table` is "brdf", "shape", "detector" or "walk").
 std::vector<std::string> table_row_ids(const std::string& table, const KernelFiles& files);
 
 /// One source for `entry` (a path under kernels/, such as "trace.cl"). Every file is taken once. Beside the files,
-/// `#include "generated/brdf_all.inc"` (and shape_, detector_) gives the row numbers CLRAY_BRDF_<id> of all rows,
+/// `#include "generated/brdf_all.inc"` (and shape_, detector_, walk_) gives the row numbers CLRAY_BRDF_<id> of all rows,
 /// the files of the used rows, CLRAY_BRDFS(X) with X(id) for each used row, and CLRAY_BRDF_ONLY if there is just
-/// one. CLRAY_HAS_BRDF_<id> and its like are defined from the top. The row `triangle` is not in CLRAY_SHAPES.
+/// one. The row `triangle` is not in CLRAY_SHAPES.
 /// Throws Error(bug) with file:line for a missing or cyclic include.
 std::string flatten(const std::string& entry, const ProgramOptions& options);
 

@@ -80,12 +80,7 @@ void place_parts(const Geometry& geometry, const std::vector<RigidMotion>& motio
     instance.moved = part.hinged_component >= 0 ? 1u : 0u;
     out->instances.push_back(instance);
   }
-  for (ClrayNode node : top.nodes) {
-    for (std::uint32_t& child : node.child) {
-      if (child != CLRAY_NO_CHILD) child += (child & 15u ? first_instance : view->root) << 4;
-    }
-    out->nodes.push_back(node);
-  }
+  append_tree(top, first_instance, &out->nodes);
   set_frame(top.frame, view);
 }
 

@@ -256,13 +256,12 @@ class Packer {
       }
       if (members.empty()) continue;
       const LinearBvh tree = build_bvh(boxes);
-      const auto first_node = static_cast<std::uint32_t>(g_.nodes.size());
       const auto first_primitive = static_cast<std::uint32_t>(g_.primitives.size());
-      g_.parts[p].root = first_node;
+      g_.parts[p].root = static_cast<std::uint32_t>(g_.nodes.size());
       g_.parts[p].frame = tree.frame;
       g_.stack_needed = std::max(g_.stack_needed, tree.stack_needed);
       for (const std::uint32_t position : tree.order) append(raw_[members[position]], members[position], used);
-      append_nodes(tree, first_node, first_primitive);
+      append_tree(tree, first_primitive, &g_.nodes);
     }
     for (std::size_t row = 0; row < used.size(); ++row) {
       if (used[row]) g_.shape_rows.push_back(static_cast<int>(row));
@@ -294,16 +293,6 @@ class Packer {
     }
     g_.primitives.push_back(primitive);
     used[raw.shape] = true;
-  }
-
-  void append_nodes(const LinearBvh& tree, std::uint32_t first_node, std::uint32_t first_primitive) {
-    for (ClrayNode node : tree.nodes) {
-      for (std::uint32_t& child : node.child) {
-        if (child == CLRAY_NO_CHILD) continue;
-        child += (child & 15u ? first_primitive : first_node) << 4;
-      }
-      g_.nodes.push_back(node);
-    }
   }
 
   // A sphere about the middle of the boxes that holds every part at every hinge angle.

@@ -75,6 +75,8 @@ ClrayPass constants_of(const Scene& scene, const PassPlan& plan) {
   k.key1 = static_cast<std::uint32_t>(scene.trace.seed >> 32);
   k.replicates = plan.request.replicates;
   k.views = static_cast<std::uint32_t>(plan.beams.views.size());
+  k.max_bounces = static_cast<std::uint32_t>(plan.traits.max_bounces);
+  k.materials = plan.surfaces.columns;
   k.width = plan.request.picture.width;
   k.height = plan.request.picture.height;
   return k;

@@ -55,6 +55,8 @@ class Specialiser {
   void tables() {
     choose("brdf", plan_.surfaces.models, &out_.options.brdfs, "surface models");
     choose("shape", geometry_.shape_rows, &out_.options.shapes, "shapes");
+    out_.options.walk = table_index("walk", scene_.trace.walk);
+    out_.kept.push_back("walk " + scene_.trace.walk + ": " + table_row("walk", scene_.trace.walk).meaning);
     std::string others;
     for (const TableRow& row : table("detector")) {
       const bool asked = std::any_of(scene_.detectors.begin(), scene_.detectors.end(),
@@ -152,9 +154,6 @@ class Specialiser {
     define("CLRAY_SOBOL", scene_.trace.sobol ? 1 : 0);
     define("CLRAY_LANES", plan_.request.lanes.size());
     define("CLRAY_CONNECTIONS", plan_.traits.connections);
-    define("CLRAY_MATERIALS", plan_.surfaces.columns);
-    define("CLRAY_COMPONENTS", plan_.traits.components);
-    define("CLRAY_MAX_BOUNCES", static_cast<std::uint64_t>(plan_.traits.max_bounces));
     // Few sizes, so that scenes share programs.
     const std::uint32_t stack = geometry_.stack_needed + 1;
     define("CLRAY_STACK", all_ || stack > 96 ? 192 : stack > 48 ? 96 : stack > 24 ? 48 : 24);

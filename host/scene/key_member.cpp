@@ -41,6 +41,21 @@ void malformed(const RowTexts& texts, const std::string& what) {
   throw Error(ErrorCode::bug, "malformed row of keys.def: " + what, fmt::format("{}.{}", texts.section, texts.name));
 }
 
+std::string rows_of(const std::string& values) {
+  static const std::string start = "row of ";
+  return values.rfind(start, 0) == 0 ? values.substr(start.size()) : "";
+}
+
+void set_choices(const std::vector<std::string>& words, KeyRow* row) {
+  row->choices = words;
+  row->values = fmt::format("\"{}\"", fmt::join(words, "\" or \""));
+}
+
+std::string choice_fault(const KeyRow& row, const std::string& word) {
+  if (std::find(row.choices.begin(), row.choices.end(), word) != row.choices.end()) return "";
+  return fmt::format("expected one of {}", fmt::join(row.choices, ", "));
+}
+
 double to_member(const KeyRow& row, double value) {
   const KeyUnit* unit = unit_of(row);
   if (unit == nullptr) return value;

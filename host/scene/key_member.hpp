@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "scene/keys.hpp"
+#include "scene/tables.hpp"
 #include "scene/value_checks.hpp"
 
 namespace clray {
@@ -30,6 +31,14 @@ KeyRow parse_texts(const RowTexts& texts);
 /// Words of a row's values: "a|b".
 std::vector<std::string> words_of(const std::string& values);
 
+/// The table whose rows' names are the values, of "row of walk"; or "".
+std::string rows_of(const std::string& values);
+
+void set_choices(const std::vector<std::string>& words, KeyRow* row);
+
+/// What is wrong with a word, or "".
+std::string choice_fault(const KeyRow& row, const std::string& word);
+
 /// Complains if the member has another name than the key and no rule converts the key's unit to the member's.
 void check_unit_rule(const RowTexts& texts, const KeyRow& row);
 
@@ -44,8 +53,10 @@ std::string vector_text(const Vec3& v);
 template <class T>
 void set_kind(const RowTexts& texts, KeyRow* row) {
   if constexpr (std::is_same_v<T, std::string>) {
-    row->kind = KeyKind::name;
-    if (row->values != "name") malformed(texts, "a text can only be a name");
+    const std::string table = rows_of(row->values);
+    row->kind = table.empty() ? KeyKind::name : KeyKind::choice;
+    if (table.empty() && row->values != "name") malformed(texts, "a text is a name, or the row of a table");
+    if (!table.empty()) set_choices(row_names(table), row);
   } else if constexpr (std::is_same_v<T, Vec3>) {
     row->kind = row->values == "direction" ? KeyKind::direction : KeyKind::vector;
     if (row->values != "direction" && row->values != "vector") malformed(texts, "expected direction or vector");
@@ -53,8 +64,7 @@ void set_kind(const RowTexts& texts, KeyRow* row) {
   } else if (row->values.find('|') != std::string::npos) {
     if (!std::is_enum_v<T> && !std::is_same_v<T, bool>) malformed(texts, "words need an enum or a bool");
     row->kind = KeyKind::choice;
-    row->choices = words_of(row->values);
-    row->values = fmt::format("\"{}\"", fmt::join(row->choices, "\" or \""));
+    set_choices(words_of(row->values), row);
   } else {
     row->key.range = row->values;
     parse_range(texts.name, &row->key);
@@ -73,7 +83,7 @@ template <class S, class T>
 void read_member(TomlTable& t, const KeyRow& row, T S::*member, S* s) {
   const std::string& name = row.key.name;
   if constexpr (std::is_same_v<T, std::string>) {
-    s->*member = t.name(name);
+    s->*member = row.kind == KeyKind::choice ? t.choice(name, row.choices) : t.name(name);
   } else if constexpr (std::is_same_v<T, Vec3>) {
     s->*member = row.kind == KeyKind::direction ? t.direction(name) : t.vector(name);
   } else if constexpr (std::is_same_v<T, double>) {
@@ -123,13 +133,14 @@ double member_number(const KeyRow& row, T S::*member, const S& s) {
 template <class S, class T>
 std::string member_fault(const KeyRow& row, T S::*member, const S& s) {
   if constexpr (std::is_same_v<T, std::string>) {
+    if (row.kind == KeyKind::choice) return choice_fault(row, s.*member);
     return !(s.*member).empty() && !is_name(s.*member) ? std::string(kNameExpected) + ", found \"" + s.*member + "\""
                                                        : "";
   } else if constexpr (std::is_same_v<T, Vec3>) {
     return row.kind == KeyKind::direction ? unit_fault(s.*member) : vector_fault(s.*member);
   } else if constexpr (std::is_enum_v<T> || std::is_same_v<T, bool>) {
     if (row.kind == KeyKind::truth || static_cast<std::size_t>(s.*member) < row.choices.size()) return "";
-    return fmt::format("expected one of {}", fmt::join(row.choices, ", "));
+    return choice_fault(row, "");
   } else {
     // Compared in the member's unit. Rounding keeps order, so every value that a file may give passes here.
     TableKey key = row.key;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tables for whoever offers their keys elsewhere (clray/keys.hpp): the rows of brdf.def, shape.def and detector.def
+// The tables for whoever offers their keys elsewhere (clray/keys.hpp): the rows of brdf.def, shape.def, detector.def, walk.def
 // and the sections of keys.def, as one kind of list.
 #include <fmt/format.h>
 
@@ -16,7 +16,7 @@
 namespace clray {
 namespace {
 
-const std::vector<std::string> kTables{"brdf", "shape", "detector"};
+const std::vector<std::string> kTables{"brdf", "shape", "detector", "walk"};
 
 std::string default_text(const TableKey& key) {
   if (!key.default_key.empty()) return key.default_key;

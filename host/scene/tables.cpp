@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads the rows of brdf.def, shape.def and detector.def, compiled in, into data that the scene reader, the checks,
+// Reads the rows of brdf.def, shape.def, detector.def and walk.def, compiled in, into data that the scene reader, the checks,
 // the listings and the packer share. A row that cannot be read is a fault of clray, not of a scene.
 #include "scene/tables.hpp"
 
@@ -38,6 +38,12 @@ const RawRow kDetectorRows[] = {
 #define DETECTOR(id, name, traits, hooks, sums, keys, meaning) {#id, name, traits, keys, meaning, hooks, sums},
 #include "detector/detector.def"
 #undef DETECTOR
+};
+
+const RawRow kWalkRows[] = {
+#define WALK(id, name, meaning) {#id, name, "", "", meaning},
+#include "walk/walk.def"
+#undef WALK
 };
 
 [[noreturn]] void malformed(const std::string& row, const std::string& what) {
@@ -238,9 +244,11 @@ const std::vector<TableRow>& table(const std::string& kind) {
   static const std::vector<TableRow> brdf = parse_rows(kBrdfRows);
   static const std::vector<TableRow> shape = parse_rows(kShapeRows);
   static const std::vector<TableRow> detector = parse_rows(kDetectorRows);
+  static const std::vector<TableRow> walk = parse_rows(kWalkRows);
   if (kind == "brdf") return brdf;
   if (kind == "shape") return shape;
   if (kind == "detector") return detector;
+  if (kind == "walk") return walk;
   throw Error(ErrorCode::bug, "there is no table '" + kind + "'");
 }
 

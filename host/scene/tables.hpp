@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rows of brdf.def, shape.def and detector.def as data: names, keys, defaults and ranges.
+// The rows of brdf.def, shape.def, detector.def and walk.def as data: names, keys, defaults and ranges.
 #pragma once
 
 #include <functional>
@@ -59,7 +59,7 @@ struct TableRow {
   std::string meaning;
 };
 
-/// Rows in the order of the file; kernels know a row by its place. kind: "brdf", "shape", "detector".
+/// Rows in the order of the file; kernels know a row by its place. kind: "brdf", "shape", "detector", "walk".
 const std::vector<TableRow>& table(const std::string& kind);
 
 /// The value of a sum's width where `value_of` knows its names. Throws Error(bug) for an unknown one.

@@ -23,6 +23,7 @@ struct TraceOptions {
   std::uint64_t max_rays = 1ull << 32;  ///< where a search for a target gives up
   std::uint64_t seed = 1;
   int replicates = 16;          ///< independent replicates (the error's degrees of freedom + 1)
+  std::string walk = "plain";   ///< through the BVH: a row of walk.def; results have the same bits under each
   bool sobol = true;            ///< false: plain random sampling
   bool stratify = true;         ///< with sobol: spread points over silhouette, delays and peaks (docs/sampling.md)
   bool specialise = true;       ///< false: the generic program (same digest, slower)

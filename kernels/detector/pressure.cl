@@ -14,10 +14,11 @@ static void pressure_record(const Buffers* g, Tally* tally, u32 n, u32 lane, con
   const vec3 lever = v3_scale(g->pass->inv_lever_per_m, v3_sub(surface->point, v3_load(g->pass->reference)));
   const vec3 torque = v3_cross(lever, push);
   const f64 values[6] = {push.x, push.y, push.z, torque.x, torque.y, torque.z};
-  const u64 at = sum_row(g, CLRAY_FIRST_pressure + n, 0u, lane_row(g, tally, lane)) + surface->component * 6u;
+  const u32 d = CLRAY_FIRST_pressure + n;
+  const u64 at = sum_row(g, d, 0u, lane_row(g, tally, lane)) + surface->component * 6u;
 #ifdef CLRAY_KEPT_pressure_push
-  i64* own =
-      tally->kept + CLRAY_KEPT_pressure_push + ((n * CLRAY_LANES + lane) * CLRAY_COMPONENTS + surface->component) * 6u;
+  i64 *own = tally->kept + CLRAY_KEPT_pressure_push + (n * CLRAY_LANES + lane) * sum_width(g, d, 0u) +
+             surface->component * 6u;
   for (u32 k = 0; k < 6u; ++k) keep(g, own + k, at + k, values[k], scale, CLRAY_UNIT_LIMIT);
 #else
   for (u32 k = 0; k < 6u; ++k) accumulate(g->sums, g->wide, at + k, values[k], scale, CLRAY_UNIT_LIMIT, g->counters);
@@ -43,7 +44,7 @@ static void detector_pressure_scatter(const Buffers* g, Tally* tally, u32 n, u32
 
 static void detector_pressure_flush(const Buffers* g, const Tally* tally, u32 n) {
 #ifdef CLRAY_KEPT_pressure_push
-  const u32 size = CLRAY_COMPONENTS * 6u;
+  const u32 size = sum_width(g, CLRAY_FIRST_pressure + n, 0u);
   for (u32 lane = 0; lane < CLRAY_LANES; ++lane) {
     const u64 at = sum_row(g, CLRAY_FIRST_pressure + n, 0u, lane_row(g, tally, lane));
     hand_over(g, at, tally->kept + CLRAY_KEPT_pressure_push + (n * CLRAY_LANES + lane) * size, size);

@@ -5,6 +5,7 @@
 #ifndef CLRAY_ABI_H
 #define CLRAY_ABI_H
 
+#include "shared/bvh_node.h"
 #include "shared/portable.h"
 
 #define CLRAY_MATERIAL_PARAMETERS 12
@@ -47,14 +48,6 @@ typedef struct ClrayPrimitive {
 #define CLRAY_SHAPE_ORIGIN 9
 #define CLRAY_SHAPE_SCALE 12
 #define CLRAY_SHAPE_KEYS 13
-
-/// A node of the linear BVH: four children with fp32 boxes rounded outward, in the box frame
-/// (x − box_centre)·box_scale. child: (index << 4) | number of primitives (0: an inner node).
-typedef struct ClrayNode {
-  f32 bounds[6][4];  // low x, high x, low y, high y, low z, high z of the four children
-  u32 child[4];      // CLRAY_NO_CHILD where empty
-} ClrayNode;
-#define CLRAY_NO_CHILD 0xffffffffu
 
 /// A part that turns about a hinge, in one view: rigid motion body -> part.
 typedef struct ClrayInstance {
@@ -135,8 +128,10 @@ typedef struct ClrayPass {
   u32 epoch;            // 0 search or plain, 1 confirmation
   u32 replicates;
   u32 views;
+  u32 max_bounces;
   u32 width, height;  // pixels
-  u32 first_lane;     // material-table row of lane 0
+  u32 materials;      // columns of the material table
+  u32 padding;
 } ClrayPass;
 
 // Shares of energy and momentum are below this on a first bounce; larger ones go to the second accumulator.
@@ -165,7 +160,7 @@ typedef struct ClrayPass {
   X(ClrayConnection, 48) \
   X(ClrayBlock, 16)      \
   X(ClrayDetector, 8)    \
-  X(ClrayPass, 104)
+  X(ClrayPass, 112)
 #ifdef __cplusplus
 #define CLRAY_ASSERT_SIZE(type, size) static_assert(sizeof(type) == size, "abi.h: " #type);
 CLRAY_SIZES(CLRAY_ASSERT_SIZE)

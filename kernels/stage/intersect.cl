@@ -51,7 +51,7 @@ static vec3 shape_to_local(const __global f64 *data, vec3 point) {
 
 #if CLRAY_ONE_SIDED
 static u32 two_sided(const Buffers *g, u32 material) {
-  return g->materials[g->pass->first_lane * CLRAY_MATERIALS + material].flags & CLRAY_MATERIAL_TWO_SIDED;
+  return g->materials[material].flags & CLRAY_MATERIAL_TWO_SIDED;
 }
 #endif
 

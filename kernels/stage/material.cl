@@ -4,7 +4,7 @@
 #define CLRAY_MATERIAL_CL
 
 static const __global ClrayMaterial *lane_material(const Buffers *g, u32 lane, u32 material) {
-  return g->materials + (g->pass->first_lane + lane) * CLRAY_MATERIALS + material;
+  return g->materials + lane * g->pass->materials + material;
 }
 
 #if CLRAY_SCATTER

@@ -16,14 +16,15 @@ static void trace_path(const Buffers *g, Sampler *sampler, Tally *tally) {
   Ray ray = stage_generate(g, sampler, tally, &path);
   surface.point = ray.o;
   ++tally->started;
-  for (u32 bounce = 0; bounce <= CLRAY_MAX_BOUNCES; ++bounce) {
+  const u32 last = CLRAY_SCATTER ? g->pass->max_bounces : 1u;
+  for (u32 bounce = 0; bounce <= last; ++bounce) {
     const vec3 before = surface.point;
     if (!stage_intersect(g, &ray, tally->view, &surface)) {
       ++tally->escaped;
       if (bounce > 0u) record_escape(g, tally, &path, shade_mirror(g, tally, &path, &ray, &surface));
       return;
     }
-    if (bounce == CLRAY_MAX_BOUNCES) break;
+    if (bounce == last) break;
     path.length += piece_length(g, tally, bounce, before, surface.point);
     record_hit(g, tally, bounce, &surface, &path);
     stage_shade(g, tally, bounce, &surface, &path);

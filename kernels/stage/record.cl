@@ -29,6 +29,11 @@ static u64 sum_row(const Buffers *g, u32 detector, u32 sum, u64 row) {
   return block->offset + row * block->width;
 }
 
+/// Numbers in a row of a detector's sum.
+static u32 sum_width(const Buffers *g, u32 detector, u32 sum) {
+  return g->blocks[g->detectors[detector].first_block + sum].width;
+}
+
 /// Adds to a number that the item keeps; what is too large for it goes straight to the second accumulator at `at`.
 static void keep(const Buffers *g, i64 *own, u64 at, f64 value, f64 scale, f64 limit) {
   i64 wide;

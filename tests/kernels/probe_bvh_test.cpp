@@ -15,7 +15,7 @@ using namespace probe;
 const char* const kWalk = R"(
 #include "shared/abi.h"
 #include "math/accumulate.cl"
-#include "math/bvh_walk.cl"
+#include "generated/walk_all.inc"
 __kernel void probe(const __global ClrayNode *nodes, const __global f64 *rays, f64 cx, f64 cy, f64 cz, f64 scale,
                     __global u32 *counts, volatile __global i64 *counters, u32 stride, u32 items) {
   const u32 i = get_global_id(0);

@@ -39,7 +39,7 @@ Boxes random_boxes(std::size_t count, double spread, double size, std::uint64_t 
 }
 
 bool is_leaf(std::uint32_t child) {
-  return (child & 15u) != 0;
+  return (child_count(child) != 0;
 }
 
 /// What a walk over the whole tree finds wrong with it.
@@ -74,13 +74,13 @@ struct Audit {
         check_leaf(node, k);
         continue;
       }
-      check_nested(node, k, child >> 4);
-      walk(child >> 4, level + 1, stack - 1 + count);
+      check_nested(node, k, child_index(child));
+      walk(child_index(child), level + 1, stack - 1 + count);
     }
   }
 
   void check_leaf(const ClrayNode& node, int k) {
-    const std::uint32_t first = node.child[k] >> 4, count = node.child[k] & 15u;
+    const std::uint32_t first = child_index(node.child[k]), count = child_count(node.child[k]);
     bad_leaves += count > kLeafPrimitives || first + count > tree.order.size();
     for (std::uint32_t i = first; i < first + count && i < tree.order.size(); ++i) {
       ++seen.at(tree.order[i]);
@@ -258,11 +258,11 @@ TEST_CASE("the stack that a walk uses in any order never exceeds what the tree s
         const std::uint32_t child = stack.back();
         stack.pop_back();
         if (is_leaf(child)) {
-          primitives += child & 15u;
+          primitives += child_count(child);
           continue;
         }
         std::vector<std::uint32_t> next;
-        for (const std::uint32_t c : tree.nodes[child >> 4].child)
+        for (const std::uint32_t c : tree.nodes[child_index(child)].child)
           if (c != CLRAY_NO_CHILD) next.push_back(c);
         std::shuffle(next.begin(), next.end(), random);
         stack.insert(stack.end(), next.begin(), next.end());
@@ -305,7 +305,7 @@ TEST_CASE("the tree parts what is apart, along every axis: a line opens few of t
       const float x[3] = {at(random), at(random), at(random)};
       std::vector<std::uint32_t> stack{0};
       while (!stack.empty()) {
-        const ClrayNode& node = tree.nodes[stack.back() >> 4];
+        const ClrayNode& node = tree.nodes[child_index(stack.back())];
         stack.pop_back();
         ++opened;
         for (int k = 0; k < 4; ++k) {

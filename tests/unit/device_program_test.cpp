@@ -108,11 +108,8 @@ TEST_CASE("only the used rows of a table are compiled, all rows have their numbe
         std::string::npos);
   CHECK(source.find("#define CLRAY_BRDFS(X) X(red) X(blue)\n") != std::string::npos);
   CHECK(source.find("CLRAY_BRDF_ONLY") == std::string::npos);
-  CHECK(source.find("#define CLRAY_HAS_BRDF_blue 1\n") != std::string::npos);
-  CHECK(source.find("CLRAY_HAS_BRDF_green") == std::string::npos);
   CHECK(count(source, "int triangle;") == 1);
   CHECK(source.find("#define CLRAY_SHAPE_triangle 0\n") != std::string::npos);
-  CHECK(source.find("#define CLRAY_HAS_SHAPE_triangle 1\n") != std::string::npos);
   CHECK(source.find("#define CLRAY_SHAPES(X) X(sphere)\n") != std::string::npos);
   CHECK(source.find("#define CLRAY_SHAPE_ONLY sphere\n") != std::string::npos);
   CHECK(source.find("#define CLRAY_DETECTORS(X)\n") != std::string::npos);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Walking the linear BVH: hands out, nearest first, the leaves whose boxes a ray may hit before t_max. Boxes only
+// Walking the linear BVH, a ray at a time: hands out, nearest first, the leaves whose boxes it may hit before t_max. Boxes only
 // cull: they are fp32, rounded outward in the box frame, and the ray is widened by more than its own rounding, so no
 // box that the fp64 ray touches is ever missed. Slab test after Kay & Kajiya (1986); widening after Ize (2013),
 // "Robust BVH ray traversal".
-#ifndef CLRAY_BVH_WALK_CL
-#define CLRAY_BVH_WALK_CL
+#ifndef CLRAY_WALK_PLAIN_CL
+#define CLRAY_WALK_PLAIN_CL
 
 // lint: box test
 typedef struct BvhWalk {
@@ -41,7 +41,7 @@ static void bvh_begin(BvhWalk *walk, u32 root, vec3 o, vec3 d, vec3 centre, f64 
   bvh_axis(from.y, d.y, 1u, &walk->near_y, &walk->far_y, &walk->inv_y, &walk->row_y);
   bvh_axis(from.z, d.z, 2u, &walk->near_z, &walk->far_z, &walk->inv_z, &walk->row_z);
   walk->scale = scale;
-  walk->stack[0] = root << 4;
+  walk->stack[0] = node_child(root, 0u);
   walk->stack_t[0] = 0.0f;
   walk->top = 1;
 }
@@ -91,12 +91,10 @@ static i32 bvh_next(BvhWalk *walk, const __global ClrayNode *nodes, f64 t_max, u
     const i32 at = --walk->top;
     if (walk->stack_t[at] > limit) continue;
     const u32 child = walk->stack[at];
-    if ((child & 15u) != 0) {
-      *first = child >> 4;
-      *count = child & 15u;
-      return 1;
-    }
-    bvh_open(walk, nodes + (child >> 4), limit, counters);
+    *first = child_index(child);
+    *count = child_count(child);
+    if (*count != 0u) return 1;
+    bvh_open(walk, nodes + *first, limit, counters);
   }
   return 0;
 }
