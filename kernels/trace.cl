@@ -43,13 +43,12 @@ __kernel void clray_trace(CLRAY_BUFFERS(CLRAY_ARGUMENT) u64 first_item, u32 item
   Tally tally;
   tally.replicate = (u32)(item % max(pass->replicates, 1u));
   item /= max(pass->replicates, 1u);
-#if CLRAY_PIXELS
-  const u64 pixels = (u64)pass->width * pass->height;
-  tally.stream = 1u + (u32)(item % max(pixels, (u64)1));
-  item /= max(pixels, (u64)1);
-#else
   tally.stream = 0u;
-#endif
+  if (CLRAY_PIXELS) {
+    const u64 pixels = (u64)pass->width * pass->height;
+    tally.stream = 1u + (u32)(item % max(pixels, (u64)1));
+    item /= max(pixels, (u64)1);
+  }
   tally.view = (u32)item;
   tally_clear(&tally);
   Sampler sampler = {pass->key0, pass->key1, pass->epoch, tally.replicate, tally.stream, 0u};

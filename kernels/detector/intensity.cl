@@ -15,11 +15,10 @@ static void detector_intensity_connect(const Buffers* g, Tally* tally, u32 n, u3
     const u64 at = sum_row(g, CLRAY_FIRST_intensity, 0u, connection_row(g, tally, lane, c));
     i64* own = tally->kept + CLRAY_KEPT_intensity_moments + 3u * (lane * CLRAY_CONNECTIONS + c);
     keep(g, own, at, w, scale, limit);
-#if CLRAY_COUNT_delay
+    if (!CLRAY_COUNT_delay) continue;
     const f64 tau = (length - g->pass->path_middle_m) * g->pass->inv_path_per_m;
     keep(g, own + 1, at + 1u, w * tau, scale, limit);
     keep(g, own + 2, at + 2u, w * tau * tau, scale, limit);
-#endif
   }
 }
 

@@ -5,8 +5,12 @@
 
 #include "shared/abi.h"
 
+#ifndef CLRAY_LANE_ROOM  // where the number of lanes is known at run time only, the most that there can be
+#define CLRAY_LANE_ROOM CLRAY_LANES
+#endif
+
 typedef struct Light {
-  f64 lane[CLRAY_LANES];
+  f64 lane[CLRAY_LANE_ROOM];
 } Light;
 
 /// The same in every lane.

@@ -17,14 +17,12 @@ static i64 to_fixed(f64 value, f64 scale, f64 limit, i64 *wide, volatile __globa
   *wide = 0;
   const f64 size = fabs(value);
   if (size <= limit) return convert_long_rte(value * scale);
-#if CLRAY_WIDE
   const f64 scaled = value * (scale * CLRAY_TWO_TO_MINUS_32);
-  if (fabs(scaled) <= CLRAY_WIDE_LIMIT) {
+  if (CLRAY_WIDE && fabs(scaled) <= CLRAY_WIDE_LIMIT) {
     *wide = convert_long_rte(scaled);
     // What the coarser scale rounds away, exactly: nothing is lost to it.
     return convert_long_rte(fma(-(f64)*wide, CLRAY_TWO_TO_32, value * scale));
   }
-#endif
   count_event(counters, size - size == 0.0 ? CLRAY_COUNT_OVERFLOW : CLRAY_COUNT_NON_FINITE);
   return 0;
 }
@@ -35,9 +33,7 @@ static void accumulate(volatile __global i64 *sums, volatile __global i64 *wide_
   i64 wide;
   const i64 q = to_fixed(value, scale, limit, &wide, counters);
   if (q != 0) atomic_add_i64(sums + at, q);
-#if CLRAY_WIDE
-  if (wide != 0) atomic_add_i64(wide_sums + at, wide);
-#endif
+  if (CLRAY_WIDE && wide != 0) atomic_add_i64(wide_sums + at, wide);
 }
 
 #endif

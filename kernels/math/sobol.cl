@@ -66,14 +66,12 @@ static f64 unit_from_bits(u32 bits) { return ((f64)bits + 0.5) * CLRAY_TWO_TO_MI
 static void sampler_draw(const Sampler *s, const __global u32 *directions, u32 group, u32 skip, u32 count, f64 *out) {
   u32 words[4];
   const u32 first = 4u * group + skip - 2u;
-#if CLRAY_SOBOL
-  if (first + count <= CLRAY_SOBOL_DIMENSIONS) {
+  if (CLRAY_SOBOL && first + count <= CLRAY_SOBOL_DIMENSIONS) {
     sampler_words(s, group, 0xffffffffu, words);
     for (u32 k = 0; k < count; ++k)
       out[k] = unit_from_bits(scramble_reversed(sobol_reversed(directions, first + k, s->index), words[skip + k]));
     return;
   }
-#endif
   sampler_words(s, group, s->index, words);
   for (u32 k = 0; k < count; ++k) out[k] = unit_from_bits(words[skip + k]);
 }
@@ -82,21 +80,19 @@ static void sampler_draw(const Sampler *s, const __global u32 *directions, u32 g
 static void sampler_begin(Sampler *s, const __global u32 *directions, u32 origin) {
   s->index = s->origin = origin;
   sampler_words(s, 0u, 0xffffffffu, s->words);
-#if CLRAY_SOBOL
-  for (u32 k = 0; k < 2u; ++k) s->base[k] = sobol_reversed(directions, k, origin);
-#endif
+  for (u32 k = 0; CLRAY_SOBOL && k < 2u; ++k) s->base[k] = sobol_reversed(directions, k, origin);
 }
 
 /// Dimensions 0 and 1 of the current point: as sampler_draw, with what it shares with the origin kept.
 static void sampler_draw_first(Sampler *s, const __global u32 *directions, f64 *out) {
-#if CLRAY_SOBOL
+  if (!CLRAY_SOBOL) {
+    sampler_draw(s, directions, 0u, 2u, 2u, out);
+    return;
+  }
   for (u32 k = 0; k < 2u; ++k) {
     const u32 x = s->base[k] ^ sobol_reversed(directions, k, s->index ^ s->origin);
     out[k] = unit_from_bits(scramble_reversed(x, s->words[2u + k]));
   }
-#else
-  sampler_draw(s, directions, 0u, 2u, 2u, out);
-#endif
 }
 
 #endif

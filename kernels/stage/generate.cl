@@ -8,16 +8,14 @@ static Ray stage_generate(const Buffers *g, Sampler *sampler, const Tally *tally
   const __global ClrayView *view = g->views + tally->view;
   f64 u[2];
   sampler_draw_first(sampler, g->directions, u);
-#if CLRAY_PIXELS
-  const u32 pixel = tally->stream - 1u;
-  const u32 width = g->pass->width;
-  u[0] = ((f64)(pixel % max(width, 1u)) + u[0]) / (f64)width;
-  u[1] = ((f64)(pixel / max(width, 1u)) + u[1]) / (f64)g->pass->height;
-#endif
+  if (CLRAY_PIXELS) {
+    const u32 pixel = tally->stream - 1u;
+    const u32 width = g->pass->width;
+    u[0] = ((f64)(pixel % max(width, 1u)) + u[0]) / (f64)width;
+    u[1] = ((f64)(pixel / max(width, 1u)) + u[1]) / (f64)g->pass->height;
+  }
   f64 share = 1.0;
-#if CLRAY_STRATA
-  if (view->strips != 0u) share = strata_place(g->strata, view, u);
-#endif
+  if (CLRAY_STRATA && view->strips != 0u) share = strata_place(g->strata, view, u);
   Ray ray;
   ray.o = v3_fma(u[0], v3_load(view->edge_u), v3_fma(u[1], v3_load(view->edge_v), v3_load(view->corner)));
   ray.d = v3_neg(v3_load(view->toward));

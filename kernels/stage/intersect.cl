@@ -35,29 +35,23 @@ static vec3 rotate_back(const __global f64 *m, vec3 a) {
             fma(m[2], a.x, fma(m[5], a.y, m[8] * a.z)));
 }
 
-#if CLRAY_INSTANCED
-static vec3 to_instance(const __global ClrayInstance *instance, vec3 point) {
+CLRAY_FN vec3 to_instance(const __global ClrayInstance *instance, vec3 point) {
   return v3_add(rotate(instance->rotation, point), v3_load(instance->translation));
 }
-#endif
 
-#if CLRAY_ANALYTIC
-static vec3 shape_to_local(const __global f64 *data, vec3 point) {
+CLRAY_FN vec3 shape_to_local(const __global f64 *data, vec3 point) {
   const f64 scale = data[CLRAY_SHAPE_SCALE];
   const vec3 moved = rotate(data, v3_sub(point, v3_load(data + CLRAY_SHAPE_ORIGIN)));
   return v3(moved.x / scale, moved.y / scale, moved.z / scale);
 }
-#endif
 
-#if CLRAY_ONE_SIDED
-static u32 two_sided(const Buffers *g, u32 material) {
-  return g->materials[material].flags & CLRAY_MATERIAL_TWO_SIDED;
+/// Whether a material's back reflects; lanes that differ in it are never in one pass.
+CLRAY_FN u32 two_sided(const Buffers *g, u32 material) {
+  return !CLRAY_ONE_SIDED || (g->materials[material].flags & CLRAY_MATERIAL_TWO_SIDED) != 0u;
 }
-#endif
 
-#if CLRAY_PLANES
 /// Puts a hit of a face that shares its plane where the ray meets that plane. Returns 0 where the ray leaves the plane.
-static i32 meet_plane(const Buffers *g, const LocalRay *ray, const __global ClrayPrimitive *primitive, u32 part, f64 *t,
+CLRAY_FN i32 meet_plane(const Buffers *g, const LocalRay *ray, const __global ClrayPrimitive *primitive, u32 part, f64 *t,
                       u32 *plane, u32 *rank) {
   const __global f64 *p = g->shapes + primitive->planes + CLRAY_PLANE_SIZE * part;
   *plane = (u32)p[CLRAY_PLANE_NUMBER];
@@ -67,12 +61,9 @@ static i32 meet_plane(const Buffers *g, const LocalRay *ray, const __global Clra
   const f64 along = v3_dot(normal, ray->d);
   *t = (p[CLRAY_PLANE_OFFSET] - v3_dot(normal, ray->o)) / along;
   *rank = along * p[CLRAY_PLANE_FACING] < 0.0 ? 2u : 1u;
-#if CLRAY_ONE_SIDED
   if (*rank == 1u && !two_sided(g, primitive->material)) *rank = 0u;
-#endif
   return *t > 0.0;
 }
-#endif
 
 /// Tests one primitive; a nearer hit, or one as near that goes first, replaces *hit.
 static void test_primitive(const Buffers *g, const LocalRay *ray, u32 index, u32 instance, Hit *hit) {
@@ -82,10 +73,8 @@ static void test_primitive(const Buffers *g, const LocalRay *ray, u32 index, u32
   u32 part = 0u, plane = 0u, rank = 0u;
   vec3 weights = v3(0.0, 0.0, 0.0);
   i32 found;
-#if CLRAY_PLANES
   // Its own t is rounded otherwise than that of the plane, which decides.
-  if (primitive->planes != CLRAY_NO_PLANES) t_max = INFINITY;
-#endif
+  if (CLRAY_PLANES && primitive->planes != CLRAY_NO_PLANES) t_max = INFINITY;
 #if CLRAY_ANALYTIC
 #if CLRAY_TRIANGLES
   if (primitive->shape == CLRAY_SHAPE_triangle) {
@@ -101,9 +90,8 @@ static void test_primitive(const Buffers *g, const LocalRay *ray, u32 index, u32
 #else
   found = triangle_intersect(data, &ray->shear, t_max, &t, &weights);
 #endif
-#if CLRAY_PLANES
-  if (found && primitive->planes != CLRAY_NO_PLANES) found = meet_plane(g, ray, primitive, part, &t, &plane, &rank);
-#endif
+  if (CLRAY_PLANES && found && primitive->planes != CLRAY_NO_PLANES)
+    found = meet_plane(g, ray, primitive, part, &t, &plane, &rank);
   if (!found || t > hit->t) return;
   if (t == hit->t && (rank != hit->rank ? rank < hit->rank : primitive->id >= hit->id)) return;
   hit->t = t;
@@ -141,7 +129,11 @@ static i32 intersect(const Buffers *g, const Ray *ray, u32 view, u32 any, Hit *h
   hit->instance = 0u;
   hit->plane = 0u;
   hit->rank = 0u;
-#if CLRAY_INSTANCED
+  if (!CLRAY_INSTANCED) {
+    const LocalRay placed = local_ray(ray->o, ray->d, ray->skip_plane);
+    intersect_tree(g, ray, &placed, centre, from->box_scale, from->root, 0u, any, hit);
+    return hit->primitive != 0xffffffffu;
+  }
   BvhWalk walk;
   u32 first, count;
   bvh_begin(&walk, from->root, ray->o, ray->d, centre, from->box_scale);
@@ -156,10 +148,6 @@ static i32 intersect(const Buffers *g, const Ray *ray, u32 view, u32 any, Hit *h
       if (any && hit->primitive != 0xffffffffu) return 1;
     }
   }
-#else
-  const LocalRay placed = local_ray(ray->o, ray->d, ray->skip_plane);
-  intersect_tree(g, ray, &placed, centre, from->box_scale, from->root, 0u, any, hit);
-#endif
   return hit->primitive != 0xffffffffu;
 }
 
@@ -178,13 +166,11 @@ static Surface hit_surface(const Buffers *g, const Ray *ray, const Hit *hit) {
 #endif
   {
     vec3 o = ray->o, d = ray->d;
-#if CLRAY_INSTANCED
     const __global ClrayInstance *instance = g->instances + hit->instance;
-    if (instance->moved) {
+    if (CLRAY_INSTANCED && instance->moved) {
       o = to_instance(instance, o);
       d = rotate(instance->rotation, d);
     }
-#endif
     const f64 scale = data[CLRAY_SHAPE_SCALE];
     const vec3 origin = v3_load(data + CLRAY_SHAPE_ORIGIN);
     s = shape_surface(primitive->shape, data + CLRAY_SHAPE_KEYS, shape_to_local(data, o), rotate(data, d),
@@ -197,15 +183,13 @@ static Surface hit_surface(const Buffers *g, const Ray *ray, const Hit *hit) {
 #else
   s = triangle_surface(data, hit->weights);
 #endif
-#if CLRAY_INSTANCED
-  if (g->instances[hit->instance].moved) {
+  if (CLRAY_INSTANCED && g->instances[hit->instance].moved) {
     const __global ClrayInstance *instance = g->instances + hit->instance;
     const vec3 moved = v3_load(instance->translation);
     s.point = rotate_back(instance->rotation, v3_sub(s.point, moved));
     s.normal = rotate_back(instance->rotation, s.normal);
     s.error = fma(8.0e-16, size_of(s.point) + size_of(moved), s.error);
   }
-#endif
   Surface surface;
   surface.point = s.point;
   surface.normal = s.normal;
@@ -222,9 +206,7 @@ static Surface hit_surface(const Buffers *g, const Ray *ray, const Hit *hit) {
   if (surface.mu < 0.0) {
     surface.normal = v3_neg(surface.normal);
     surface.mu = -surface.mu;
-#if CLRAY_ONE_SIDED
     surface.lit = two_sided(g, primitive->material);
-#endif
   }
   return surface;
 }
@@ -253,13 +235,11 @@ static Ray ray_from(const Surface *surface, vec3 d) {
   return ray;
 }
 
-#if CLRAY_SHADOW
 /// Whether anything lies between a surface and infinity in direction d.
-static i32 shadowed(const Buffers *g, const Surface *surface, u32 view, vec3 d) {
+CLRAY_FN i32 shadowed(const Buffers *g, const Surface *surface, u32 view, vec3 d) {
   const Ray ray = ray_from(surface, d);
   Hit hit;
   return intersect(g, &ray, view, 1u, &hit);
 }
-#endif
 
 #endif

@@ -3,13 +3,12 @@
 #ifndef CLRAY_MATERIAL_CL
 #define CLRAY_MATERIAL_CL
 
-static const __global ClrayMaterial *lane_material(const Buffers *g, u32 lane, u32 material) {
+CLRAY_FN const __global ClrayMaterial *lane_material(const Buffers *g, u32 lane, u32 material) {
   return g->materials + lane * g->pass->materials + material;
 }
 
-#if CLRAY_SCATTER
 /// Directional reflectance from the material's table: linear between nodes that the host set as close as it takes.
-static f64 lane_reflectance(const Buffers *g, const __global ClrayMaterial *m, f64 mu) {
+CLRAY_FN f64 lane_reflectance(const Buffers *g, const __global ClrayMaterial *m, f64 mu) {
   const __global f64 *nodes = g->tables + m->reflectance + 1;
   const u32 count = (u32)nodes[-1];
   u32 low = 0u, high = count - 1u;
@@ -26,9 +25,8 @@ static f64 lane_reflectance(const Buffers *g, const __global ClrayMaterial *m, f
 }
 
 /// Share of the light that a hit surface sends on, in all directions together; 0 on a black back.
-static f64 surface_reflectance(const Buffers *g, u32 lane, const Surface *surface) {
+CLRAY_FN f64 surface_reflectance(const Buffers *g, u32 lane, const Surface *surface) {
   return surface->lit ? lane_reflectance(g, lane_material(g, lane, surface->material), surface->mu) : 0.0;
 }
-#endif
 
 #endif

@@ -38,9 +38,7 @@ static u32 sum_width(const Buffers *g, u32 detector, u32 sum) {
 static void keep(const Buffers *g, i64 *own, u64 at, f64 value, f64 scale, f64 limit) {
   i64 wide;
   *own += to_fixed(value, scale, limit, &wide, g->counters);
-#if CLRAY_WIDE
-  if (wide != 0) atomic_add_i64(g->wide + at, wide);
-#endif
+  if (CLRAY_WIDE && wide != 0) atomic_add_i64(g->wide + at, wide);
 }
 
 static void add_nonzero(volatile __global i64 *sums, u64 at, i64 value) {

@@ -4,11 +4,9 @@
 #ifndef CLRAY_SCATTER_CL
 #define CLRAY_SCATTER_CL
 
-#if CLRAY_SCATTER
-#if CLRAY_LANES > 1
 /// Carries products and densities of all lanes through a reflection toward wo, and the throughputs that follow from
 /// them. A common power of two keeps both in range over any number of bounces; no throughput depends on it.
-static void scatter_lanes(const Buffers *g, const Surface *surface, vec3 wo, f64 hero_pdf, Path *path) {
+CLRAY_FN void scatter_lanes(const Buffers *g, const Surface *surface, vec3 wo, f64 hero_pdf, Path *path) {
   const BrdfAngles angles = brdf_angles(surface->normal, surface->toward, wo);
   f64 sum = 0.0;
   for (u32 lane = 0; lane < CLRAY_LANES; ++lane) {
@@ -23,19 +21,16 @@ static void scatter_lanes(const Buffers *g, const Surface *surface, vec3 wo, f64
   path->product = light_scaled(&path->product, CLRAY_TWO_TO_MINUS_32);
   path->density = light_scaled(&path->density, CLRAY_TWO_TO_MINUS_32);
 }
-#endif
 
 /// A direction for the path, and its throughput after the reflection; 0 when all that is left is absorbed. The lane that
 /// samples is chosen by the first bounce's lobe coordinate, whose rest then chooses the lobe: an even choice that stays
 /// stratified.
-static u32 scatter(const Buffers *g, f64 u[4], u32 bounce, const Surface *surface, Path *path, Ray *ray) {
-#if CLRAY_LANES > 1
-  if (bounce == 0u) {
+CLRAY_FN u32 scatter(const Buffers *g, f64 u[4], u32 bounce, const Surface *surface, Path *path, Ray *ray) {
+  if (CLRAY_LANES > 1 && bounce == 0u) {
     const f64 x = u[0] * (f64)CLRAY_LANES;
     path->hero = min((u32)x, CLRAY_LANES - 1u);
     u[0] = x - (f64)path->hero;
   }
-#endif
   if (!surface->lit || !(surface->mu > 0.0)) return 0u;
   vec3 t, b;
   v3_frame(surface->normal, &t, &b);
@@ -44,16 +39,14 @@ static u32 scatter(const Buffers *g, f64 u[4], u32 bounce, const Surface *surfac
   const BrdfSample sample = brdf_sample(hero, g->tables, wi, u[0], u[1], u[2]);
   if (!sample.ok) return 0u;
   const vec3 wo = v3_unit(v3_fma(sample.wo.x, t, v3_fma(sample.wo.y, b, v3_scale(sample.wo.z, surface->normal))));
-#if CLRAY_LANES > 1
-  scatter_lanes(g, surface, wo, sample.pdf, path);
-#else
-  path->throughput.lane[0] *= sample.weight;
-#endif
+  if (CLRAY_LANES > 1)
+    scatter_lanes(g, surface, wo, sample.pdf, path);
+  else
+    path->throughput.lane[0] *= sample.weight;
   path->delta = (u32)sample.delta;
   *ray = ray_from(surface, wo);
   return light_largest(&path->throughput) > 0.0;
 }
-#endif
 
 /// The stage: chooses where the path goes on.
 static Scattering stage_scatter(const Buffers *g, const Sampler *sampler, u32 bounce, const Surface *surface, Path *path,
@@ -63,14 +56,14 @@ static Scattering stage_scatter(const Buffers *g, const Sampler *sampler, u32 bo
   s.gain = light_even(0.0);
   s.goes_on = 0u;
   s.roulette = 0.0;
-#if CLRAY_SCATTER
-  f64 u[4];
-  sampler_draw(sampler, g->directions, bounce + 1u, 0u, 4u, u);
-  s.goes_on = scatter(g, u, bounce, surface, path, ray);
-  path->mirrors = (bounce == 0u || path->mirrors) && path->delta;
-  if (CLRAY_MIRRORS_FIRST && bounce == 0u && !path->mirrors) s.goes_on = 0u;
-  s.roulette = u[3];
-#endif
+  if (CLRAY_SCATTER) {
+    f64 u[4];
+    sampler_draw(sampler, g->directions, bounce + 1u, 0u, 4u, u);
+    s.goes_on = scatter(g, u, bounce, surface, path, ray);
+    path->mirrors = (bounce == 0u || path->mirrors) && path->delta;
+    if (CLRAY_MIRRORS_FIRST && bounce == 0u && !path->mirrors) s.goes_on = 0u;
+    s.roulette = u[3];
+  }
   s.out = ray->d;
   return s;
 }
@@ -79,7 +72,7 @@ static Scattering stage_scatter(const Buffers *g, const Sampler *sampler, u32 bo
 /// It survives with probability q and is raised by 1/q, so the mean stays. The share itself has no say: a path that
 /// stands for little of the beam is as likely to go on as any. Returns whether the path lives; a dead one carries nothing.
 static i32 stage_roulette(u32 bounce, Path *path, Scattering *s) {
-#if CLRAY_SCATTER
+  if (!CLRAY_SCATTER) return 0;
   const f64 left = light_largest(&path->throughput) / path->share;
   if (s->goes_on && (bounce < 2u || left >= 1.0)) return 1;
   const f64 q = f64_max(left, 0.05);
@@ -87,15 +80,10 @@ static i32 stage_roulette(u32 bounce, Path *path, Scattering *s) {
   const Light before = path->throughput;
   for (u32 lane = 0; lane < CLRAY_LANES; ++lane) {
     path->throughput.lane[lane] = lives ? before.lane[lane] / q : 0.0;
-#if CLRAY_LANES > 1
-    path->product.lane[lane] /= q;
-#endif
+    if (CLRAY_LANES > 1) path->product.lane[lane] /= q;
   }
   if (s->goes_on) s->gain = light_gain(&path->throughput, &before);
   return lives;
-#else
-  return 0;
-#endif
 }
 
 #endif

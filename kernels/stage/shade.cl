@@ -5,55 +5,47 @@
 #ifndef CLRAY_SHADE_CL
 #define CLRAY_SHADE_CL
 
-#if CLRAY_CONNECT
-static const __global ClrayConnection *connection_of(const Buffers *g, const Tally *tally, u32 c) {
+CLRAY_FN const __global ClrayConnection *connection_of(const Buffers *g, const Tally *tally, u32 c) {
   return g->connections + tally->view * CLRAY_CONNECTIONS + c;
 }
 
 /// Path length from a point to a connection in direction o, relative to the reference point.
-static f64 length_toward(const Buffers *g, vec3 point, vec3 o) {
+CLRAY_FN f64 length_toward(const Buffers *g, vec3 point, vec3 o) {
   return v3_dot(o, v3_sub(point, v3_load(g->pass->reference)));
 }
 
 /// Weights toward a connection, per lane: 0 when the surface does not see it. On the first bounce of a monostatic view
 /// what is lit is seen: no shadow ray.
-static i32 shade(const Buffers *g, const Surface *surface, const Path *path, u32 view, u32 bounce,
-                 const __global ClrayConnection *connection, Light *weights) {
+CLRAY_FN i32 shade(const Buffers *g, const Surface *surface, const Path *path, u32 view, u32 bounce,
+                   const __global ClrayConnection *connection, Light *weights) {
   const vec3 o = v3_load(connection->direction);
   if (!surface->lit || !(surface->mu > 0.0) || !(v3_dot(surface->normal, o) > 0.0)) return 0;
   const BrdfAngles angles = brdf_angles(surface->normal, surface->toward, o);
-#if CLRAY_SHADOW
-  if ((connection->shadow || bounce > 0u) && shadowed(g, surface, view, o)) return 0;
-#endif
+  if (CLRAY_SHADOW && (connection->shadow || bounce > 0u) && shadowed(g, surface, view, o)) return 0;
   for (u32 lane = 0; lane < CLRAY_LANES; ++lane) {
     const f64 f = brdf_eval(lane_material(g, lane, surface->material), g->tables, angles);
     weights->lane[lane] = path->throughput.lane[lane] * (f * angles.mu_o);
   }
   return 1;
 }
-#endif
 
 /// The stage: records the light that each connection receives from a surface.
 static void stage_shade(const Buffers *g, Tally *tally, u32 bounce, const Surface *surface, const Path *path) {
-#if CLRAY_CONNECT
   if (CLRAY_MIRRORS_FIRST && bounce == 0u) return;
-  for (u32 c = 0; c < CLRAY_CONNECTIONS; ++c) {
+  for (u32 c = 0; CLRAY_CONNECT && c < CLRAY_CONNECTIONS; ++c) {
     const __global ClrayConnection *connection = connection_of(g, tally, c);
     Light weights;
     if (!shade(g, surface, path, tally->view, bounce, connection, &weights)) continue;
     const f64 out = length_toward(g, surface->point, v3_load(connection->direction));
     record_connect(g, tally, c, &weights, path->length - out, surface->point);
   }
-#endif
 }
 
 /// Light that leaves the body from a mirror: a connection receives it through its cone. Returns whether no connection
 /// has one.
 static u32 shade_mirror(const Buffers *g, Tally *tally, const Path *path, const Ray *ray, const Surface *last) {
-  u32 blind = 0u;
-#if CLRAY_CONNECT && CLRAY_DELTA
-  if (!path->delta) return 0u;
-  blind = 1u;
+  if (!(CLRAY_CONNECT && CLRAY_DELTA && path->delta)) return 0u;
+  u32 blind = 1u;
   for (u32 c = 0; c < CLRAY_CONNECTIONS; ++c) {
     const __global ClrayConnection *connection = connection_of(g, tally, c);
     const vec3 o = v3_load(connection->direction);
@@ -63,7 +55,6 @@ static u32 shade_mirror(const Buffers *g, Tally *tally, const Path *path, const 
     const Light weights = light_scaled(&path->throughput, connection->inv_solid_angle);
     record_connect(g, tally, c, &weights, path->length - length_toward(g, last->point, o), last->point);
   }
-#endif
   return blind;
 }
 

@@ -69,11 +69,15 @@ typedef struct Scattering {
   u32 goes_on;   // 0: all that is left is absorbed
 } Scattering;
 
+#ifndef CLRAY_KEPT_ROOM  // as CLRAY_LANE_ROOM
+#define CLRAY_KEPT_ROOM CLRAY_KEPT
+#endif
+
 /// Where a work-item adds: its view, replicate and pixel (1 + its number; 0: a beam), and the sums that it keeps.
 typedef struct Tally {
   u32 view, replicate, stream;
   u32 started, escaped, killed, capped;
-  i64 kept[CLRAY_KEPT];
+  i64 kept[CLRAY_KEPT_ROOM];
 } Tally;
 
 #endif
