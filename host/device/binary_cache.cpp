@@ -12,6 +12,8 @@
 #include <fstream>
 #include <iterator>
 
+#include "device/program.hpp"
+
 namespace clray {
 namespace {
 
@@ -28,13 +30,60 @@ std::string key_of(const OpenedDevice& opened, const std::string& flags, const s
   return key;
 }
 
+constexpr std::uint64_t kFnvBasis = 0xcbf29ce484222325u;
+
+std::uint64_t fnv1a(std::uint64_t state, const std::string& text) {
+  for (const unsigned char c : text) state = (state ^ c) * 0x100000001b3u;
+  return state;
+}
+
 fs::path file_of(const std::string& key) {
-  std::uint64_t hash = 0xcbf29ce484222325u;  // FNV-1a
-  for (const unsigned char c : key) hash = (hash ^ c) * 0x100000001b3u;
-  return fs::path(kernel_cache_folder()) / "clray" / fmt::format("{:016x}.bin", hash);
+  return fs::path(kernel_cache_folder()) / "clray" / fmt::format("{:016x}.bin", fnv1a(kFnvBasis, key));
+}
+
+/// Of what passed: the file and its text, from two hashes of the key and a checksum of both.
+struct Note {
+  fs::path path;
+  std::string text;
+};
+
+Note note_of(const OpenedDevice& opened, const std::string& what) {
+  const std::string key = key_of(opened, build_flags(opened, false), what);
+  const std::uint64_t first = fnv1a(kFnvBasis, key), second = fnv1a(~kFnvBasis, key);
+  const std::string hashes = fmt::format("clray {} passed {:016x} {:016x}\n", CLRAY_VERSION, first, second);
+  return {fs::path(kernel_cache_folder()) / "clray" / fmt::format("{:016x}.passed", first),
+          hashes + fmt::format("{:016x}\n", fnv1a(kFnvBasis, hashes))};
+}
+
+bool write_whole(const fs::path& path, const std::string& text) {
+  std::error_code error;
+  fs::create_directories(path.parent_path(), error);
+  if (error) return false;
+  std::string temporary = path.string() + "-XXXXXX";
+  const int descriptor = mkstemp(temporary.data());
+  if (descriptor < 0) return false;
+  close(descriptor);
+  std::ofstream file(temporary, std::ios::binary);
+  file << text;
+  file.close();
+  if (file) fs::rename(temporary, path, error);  // whole or not at all, whoever else writes it
+  if (file && !error) return true;
+  fs::remove(temporary, error);
+  return false;
 }
 
 }  // namespace
+
+bool remembered(const OpenedDevice& opened, const std::string& what) {
+  const Note note = note_of(opened, what);
+  std::ifstream file(note.path, std::ios::binary);
+  return std::string((std::istreambuf_iterator<char>(file)), {}) == note.text;
+}
+
+void remember(const OpenedDevice& opened, const std::string& what) {
+  const Note note = note_of(opened, what);
+  write_whole(note.path, note.text);
+}
 
 std::string kernel_cache_folder() {
   if (const char* folder = getenv("POCL_CACHE_DIR")) return folder;
@@ -73,33 +122,19 @@ std::optional<cl::Program> load_binary(const OpenedDevice& opened, const std::st
     program.build({opened.device}, flags.c_str());
     return program;
   } catch (const cl::Error&) {
-    return {};  // perhaps of another driver: the source will be built
+    return {};  // of another driver, perhaps: the source is at hand
   }
 }
 
 void save_binary(const OpenedDevice& opened, const std::string& flags, const std::string& source,
                  const cl::Program& program) {
   const std::string key = key_of(opened, flags, source);
-  const fs::path path = file_of(key);
-  std::error_code error;
-  fs::create_directories(path.parent_path(), error);
-  if (error) return;
-  std::string temporary = path.string() + "-XXXXXX";
   try {
     const auto binaries = program.getInfo<CL_PROGRAM_BINARIES>();
     if (binaries.size() != 1 || binaries.front().empty()) return;
-    const int descriptor = mkstemp(temporary.data());
-    if (descriptor < 0) return;
-    close(descriptor);
-    std::ofstream file(temporary, std::ios::binary);
-    file << key << '\0';
-    file.write(reinterpret_cast<const char*>(binaries.front().data()),
-               static_cast<std::streamsize>(binaries.front().size()));
-    file.close();
-    if (file) fs::rename(temporary, path, error);  // so it appears whole, even if others write it as well
-    if (!file || error) fs::remove(temporary, error);
+    write_whole(file_of(key), key + '\0' + std::string(binaries.front().begin(), binaries.front().end()));
   } catch (const cl::Error&) {
-    fs::remove(temporary, error);
+    // What cannot be kept is built again.
   }
 }
 

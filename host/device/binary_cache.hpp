@@ -19,6 +19,12 @@ std::optional<cl::Program> load_binary(const OpenedDevice& opened, const std::st
 void save_binary(const OpenedDevice& opened, const std::string& flags, const std::string& source,
                  const cl::Program& program);
 
+/// Whether `what` (a program's source, say) was remembered for that device and driver: a file beside the kernels, with
+/// a checksum.
+bool remembered(const OpenedDevice& opened, const std::string& what);
+/// Remembers it. A failure to write is no error: it is forgotten.
+void remember(const OpenedDevice& opened, const std::string& what);
+
 /// What to tell about a folder of compiled kernels that cannot be written.
 std::string unwritable_cache();
 

@@ -27,12 +27,21 @@ void write_buffer(OpenedDevice& opened, const cl::Buffer& buffer, const std::vec
   });
 }
 
+/// A buffer that holds a copy of `count` elements.
+template <class T>
+cl::Buffer make_buffer(OpenedDevice& opened, const T* values, std::size_t count,
+                       cl_mem_flags flags = CL_MEM_READ_ONLY) {
+  cl::Buffer buffer = make_buffer<T>(opened, count, flags);
+  if (count == 0) return buffer;
+  with_cl_errors(opened.info.name,
+                 [&] { opened.queue.enqueueWriteBuffer(buffer, CL_TRUE, 0, count * sizeof(T), values); });
+  return buffer;
+}
+
 /// A buffer that holds a copy of `values`.
 template <class T>
 cl::Buffer make_buffer(OpenedDevice& opened, const std::vector<T>& values, cl_mem_flags flags = CL_MEM_READ_ONLY) {
-  cl::Buffer buffer = make_buffer<T>(opened, values.size(), flags);
-  write_buffer(opened, buffer, values);
-  return buffer;
+  return make_buffer(opened, values.data(), values.size(), flags);
 }
 
 /// Sets `count` elements from the start to zero bytes (in queue order; does not wait).

@@ -13,6 +13,8 @@
 
 namespace clray {
 
+class DevicePass;
+
 /// One program and its buffers on every opened device.
 class PassRunner {
  public:
@@ -27,13 +29,12 @@ class PassRunner {
   double compile_seconds() const { return compile_seconds_; }
 
  private:
-  struct OnDevice;
   void drain(Sums* sums);
   bool run_block(std::uint32_t first_point, std::uint32_t points, const std::function<bool(double)>& keep_going);
 
   const PassPlan& plan_;
   const TraceOptions& options_;
-  std::vector<std::unique_ptr<OnDevice>> devices_;
+  std::vector<std::unique_ptr<DevicePass>> devices_;
   double compile_seconds_ = 0.0;
 };
 

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// A pass on one device: its program, its buffers, launches of work-items, and the sums read back. Knows nothing of what
+// the sums mean.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+
+#include "device/program.hpp"
+#include "pipeline/pass_buffers.hpp"
+#include "pipeline/plan.hpp"
+
+namespace clray {
+
+/// A block of points of every view, replicate and pixel, and how many a work-item takes at most.
+struct PointBlock {
+  std::uint32_t first = 0, count = 0, chunk = 16;
+};
+
+class DevicePass {
+ public:
+  /// Builds the program and copies the plan's numbers. `files` differ from the embedded ones in tests alone. Throws
+  /// Error(input) where the sums do not fit into a buffer of the device, Error(device).
+  DevicePass(OpenedDevice& device, const PassPlan& plan, const Geometry& geometry,
+             const KernelFiles& files = embedded_kernels());
+
+  void set_epoch(std::uint32_t epoch);
+  /// Runs work-items first … first + items - 1 of a block; returns when they are done.
+  void launch_items(std::uint64_t first, std::uint32_t items, const PointBlock& block, std::uint32_t group);
+  /// Adds everything that was summed to *sums, and clears it.
+  void drain(const PassPlan& plan, Sums* sums);
+  /// Sets everything that is summed to zero.
+  void clear(const PassPlan& plan);
+
+  std::uint64_t slice_items = 4096;  ///< of the next launch
+
+ private:
+  void check_size(const PassPlan& plan) const;
+
+  OpenedDevice& opened_;
+  cl::Kernel kernel_;
+  std::map<std::string, cl::Buffer> buffers_;  // by the names of shared/buffers.h
+  ClrayPass constants_;
+  bool has_wide_ = false;
+  cl_uint first_argument_ = 0;  // behind the buffers
+};
+
+}  // namespace clray

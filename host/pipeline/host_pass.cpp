@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+// See host_pass.hpp. The kernels read the sizes and choices that a device's program is built with from `numbers`.
+#include "pipeline/host_pass.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include "clray/error.hpp"
+#include "pipeline/host_opencl.hpp"
+#include "pipeline/pass_buffers.hpp"
+#include "shared/abi.h"
+#include "shared/elementary.h"
+#include "shared/philox.h"
+
+// The kernels leave unused what a scene does not need.
+#pragma GCC diagnostic ignored "-Wunused-function"
+#pragma GCC diagnostic ignored "-Wunused-parameter"
+#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
+#pragma GCC diagnostic ignored "-Wsign-compare"
+
+#include "generated/detector_numbers.inc"
+
+#define CLRAY_PATH_NUMBERS(X)                                                        \
+  X(CLRAY_LANES) X(CLRAY_CONNECTIONS) X(CLRAY_KEPT) X(CLRAY_CONNECT) X(CLRAY_SCATTER) \
+  X(CLRAY_SHADOW) X(CLRAY_DELTA) X(CLRAY_ONE_SIDED) X(CLRAY_PLANES) X(CLRAY_INSTANCED) \
+  X(CLRAY_WIDE) X(CLRAY_STRATA) X(CLRAY_SOBOL) X(CLRAY_PIXELS)
+#define CLRAY_LANES numbers.CLRAY_LANES_
+#define CLRAY_CONNECTIONS numbers.CLRAY_CONNECTIONS_
+#define CLRAY_KEPT numbers.CLRAY_KEPT_
+#define CLRAY_CONNECT numbers.CLRAY_CONNECT_
+#define CLRAY_SCATTER numbers.CLRAY_SCATTER_
+#define CLRAY_SHADOW numbers.CLRAY_SHADOW_
+#define CLRAY_DELTA numbers.CLRAY_DELTA_
+#define CLRAY_ONE_SIDED numbers.CLRAY_ONE_SIDED_
+#define CLRAY_PLANES numbers.CLRAY_PLANES_
+#define CLRAY_INSTANCED numbers.CLRAY_INSTANCED_
+#define CLRAY_WIDE numbers.CLRAY_WIDE_
+#define CLRAY_STRATA numbers.CLRAY_STRATA_
+#define CLRAY_SOBOL numbers.CLRAY_SOBOL_
+#define CLRAY_PIXELS numbers.CLRAY_PIXELS_
+#define CLRAY_TRIANGLES 1
+#define CLRAY_ANALYTIC 1
+#define CLRAY_LANE_ROOM 64
+#define CLRAY_KEPT_ROOM 65536
+
+namespace clray {
+namespace {
+
+/// What a device's program has as macros.
+struct ProgramNumbers {
+#define CLRAY_NUMBER(name) u32 name##_ = 0;
+  CLRAY_PATH_NUMBERS(CLRAY_NUMBER)
+  CLRAY_DETECTOR_NUMBERS(CLRAY_NUMBER)
+#undef CLRAY_NUMBER
+};
+
+thread_local ProgramNumbers numbers;
+
+#include "trace.cl"
+
+ProgramNumbers numbers_of(const ProgramOptions& options) {
+  ProgramNumbers n;
+  const auto read = [&](const char* name) -> u32 {
+    const auto define = options.defines.find(name);
+    return define == options.defines.end() ? 0u : static_cast<u32>(std::stoul(define->second));
+  };
+#define CLRAY_NUMBER(name) n.name##_ = read(#name);
+  CLRAY_PATH_NUMBERS(CLRAY_NUMBER)
+  CLRAY_DETECTOR_NUMBERS(CLRAY_NUMBER)
+#undef CLRAY_NUMBER
+  return n;
+}
+
+}  // namespace
+
+bool host_has_room(const PassPlan& plan) {
+  const ProgramNumbers n = numbers_of(plan.program.options);
+  return n.CLRAY_LANES_ <= CLRAY_LANE_ROOM && n.CLRAY_KEPT_ <= CLRAY_KEPT_ROOM;
+}
+
+std::uint64_t items_of(const PassPlan& plan, std::uint32_t points, std::uint32_t chunk) {
+  const PictureSize& size = plan.request.picture;
+  const std::uint64_t pixels = plan.request.pixels ? static_cast<std::uint64_t>(size.width) * size.height : 1;
+  return (static_cast<std::uint64_t>(points) + chunk - 1) / chunk * plan.request.replicates * pixels *
+         plan.beams.views.size();
+}
+
+Sums trace_on_host(const PassPlan& plan, const Geometry& geometry, std::uint32_t points, std::uint32_t chunk) {
+  if (!host_has_room(plan)) throw Error(ErrorCode::bug, "no room for the pass's lanes or sums", "trace_on_host");
+  const PassBuffers in(plan, geometry);
+  numbers = numbers_of(plan.program.options);
+  std::vector<i64> sums(in.sums.count), wide(in.wide.count), counters(in.counters.count);
+  std::vector<u32> counts(in.counts.count);
+  const std::uint64_t items = items_of(plan, points, chunk);
+  for (global_id = 0; global_id < items; ++global_id) {
+    clray_trace(in.pass.data, in.views.data, in.connections.data, in.nodes.data, in.primitives.data, in.shapes.data,
+                in.instances.data, in.materials.data, in.tables.data, in.directions.data, in.detectors.data,
+                in.blocks.data, in.settings.data, in.strata.data, sums.data(), wide.data(), counts.data(),
+                counters.data(), 0, static_cast<u32>(items), 0, points, chunk);
+  }
+  Sums out;
+  out.points = points;
+  for (std::size_t k = 0; k < sums.size(); ++k)
+    out.values.push_back(sums[k] + (wide.size() == sums.size() ? static_cast<Sum>(wide[k]) * 4294967296 : 0));
+  out.counts.assign(counts.begin(), counts.end());
+  for (std::size_t c = 0; c < CLRAY_COUNTERS; ++c) out.events[c] = static_cast<std::uint64_t>(counters[c]);
+  return out;
+}
+
+}  // namespace clray

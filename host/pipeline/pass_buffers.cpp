@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// See pass_buffers.hpp.
+#include "pipeline/pass_buffers.hpp"
+
+#include "pipeline/sobol.hpp"
+
+namespace clray {
+namespace {
+
+template <class T>
+Numbers<T> all_of(const std::vector<T>& values) {
+  return {values.data(), values.size()};
+}
+
+}  // namespace
+
+PassBuffers::PassBuffers(const PassPlan& plan, const Geometry& geometry) {
+  for (const SumBlock& block : plan.layout.blocks) own_blocks_.push_back({block.offset, block.width, 0});
+  for (const PassDetector& detector : plan.detectors) {
+    own_detectors_.push_back({detector.first_block, static_cast<std::uint32_t>(own_settings_.size())});
+    own_settings_.insert(own_settings_.end(), detector.settings.begin(), detector.settings.end());
+  }
+  own_directions_ = sobol_directions_reversed();
+  pass = {&plan.constants, 1};
+  views = all_of(plan.beams.views);
+  connections = all_of(plan.beams.connections);
+  nodes = all_of(plan.beams.nodes);
+  primitives = all_of(geometry.primitives);
+  shapes = all_of(geometry.shapes);
+  instances = all_of(plan.beams.instances);
+  materials = all_of(plan.surfaces.materials);
+  tables = all_of(plan.surfaces.tables);
+  directions = all_of(own_directions_);
+  detectors = all_of(own_detectors_);
+  blocks = all_of(own_blocks_);
+  settings = all_of(own_settings_);
+  strata = all_of(plan.beams.strata);
+  const bool wide_too = plan.program.options.defines.at("CLRAY_WIDE") == "1";
+  sums.count = plan.layout.values;
+  wide.count = wide_too ? plan.layout.values : 1;
+  counts.count = plan.layout.counts;
+  counters.count = CLRAY_COUNTERS;
+}
+
+}  // namespace clray

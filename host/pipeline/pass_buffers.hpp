@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// The numbers of a plan as the kernels take them: one member for each row of shared/buffers.h. Whoever runs a pass, a
+// device or the host, takes them from here.
+#pragma once
+
+#include <cstddef>
+#include <type_traits>
+#include <vector>
+
+#include "pipeline/plan.hpp"
+#include "shared/buffers.h"
+
+namespace clray {
+
+/// `count` numbers from `data` on, which belong to somebody else; null: that many zeros, which a pass adds to.
+template <class T>
+struct Numbers {
+  const T* data = nullptr;
+  std::size_t count = 0;
+};
+
+/// The buffers of a pass. Plan and geometry must outlive it.
+class PassBuffers {
+ public:
+  PassBuffers(const PassPlan& plan, const Geometry& geometry);
+  PassBuffers(const PassBuffers&) = delete;
+  PassBuffers& operator=(const PassBuffers&) = delete;
+
+#define CLRAY_MEMBER(type, name) Numbers<std::remove_cv_t<type>> name;
+  CLRAY_BUFFERS(CLRAY_MEMBER)
+#undef CLRAY_MEMBER
+
+ private:
+  std::vector<ClrayBlock> own_blocks_;
+  std::vector<ClrayDetector> own_detectors_;
+  std::vector<double> own_settings_;
+  std::vector<std::uint32_t> own_directions_;
+};
+
+}  // namespace clray

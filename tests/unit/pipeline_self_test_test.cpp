@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+// The self-test that traces passes here for programs of every kind, and refuses one that traces wrongly (played by edits
+// of the kernels' text). The host's kernels, which it is held against, give a device's bits for other scenes as well.
+#include <doctest/doctest.h>
+
+#include <chrono>
+#include <filesystem>
+
+#include "device/binary_cache.hpp"
+#include "device/platforms.hpp"
+#include "pipeline/built_in_scene.hpp"
+#include "pipeline/device_pass.hpp"
+#include "pipeline/host_pass.hpp"
+#include "pipeline/traced_self_test.hpp"
+#include "scene/tables.hpp"
+
+using namespace clray;
+
+namespace {
+
+OpenedDevice opened_cpu() {
+  return open_device(choose_devices(find_devices(), "cpu").front());
+}
+
+/// Everything in the tables that a beam can meet.
+ProgramContent everything() {
+  ProgramContent content;
+  for (const TableRow& row : table("brdf")) content.models.push_back(row.name);
+  for (const TableRow& row : table("shape")) content.shapes.push_back(row.name);
+  for (const TableRow& row : table("detector")) {
+    if (row.beam && !row.inner) content.detectors.push_back(row.name);
+  }
+  content.lanes = content.connections = 2;
+  content.components = 4;
+  content.scatter = content.hinged = content.one_sided = content.shared_planes = true;
+  return content;
+}
+
+/// One bounce toward an observer at the source, of one shape and surface.
+ProgramContent simple(const std::string& shape, const std::string& model, const std::string& detector = "delay") {
+  ProgramContent content;
+  content.shapes = {shape};
+  content.models = {model};
+  content.detectors = {detector};
+  return content;
+}
+
+/// What the self-test says when `text` in kernel file `path` reads `fault` instead.
+std::string refusal(const ProgramContent& content, const std::string& path, const std::string& text,
+                    const std::string& fault) {
+  OpenedDevice opened = opened_cpu();
+  KernelFiles files = embedded_kernels();
+  std::string& file = files.at(path);
+  const std::size_t at = file.find(text);
+  REQUIRE(at != std::string::npos);
+  file.replace(at, text.size(), fault);
+  try {
+    run_traced_self_test(opened, built_in_scene(content).plan, true, files);
+  } catch (const Error& error) {
+    CHECK(error.code() == ErrorCode::device);
+    CHECK(error.context() == opened.info.name);
+    return error.message();
+  }
+  return "passed";
+}
+
+void check_refused(const ProgramContent& content, const std::string& path, const std::string& text,
+                   const std::string& fault) {
+  const std::string message = refusal(content, path, text, fault);
+  INFO(path << ": " << fault << ": " << message);
+  CHECK(message.find("refused: the self-test traced a small scene wrongly: ") == 0);
+}
+
+}  // namespace
+
+TEST_CASE("the host's kernels give their known answers") {
+  CHECK_NOTHROW(check_host_kernels());
+}
+
+TEST_CASE("rays of the built-in scene hit, miss, scatter and end in every way, on shallow stacks") {
+  for (const bool pixels : {false, true}) {
+    ProgramContent content = everything();
+    content.pixels = pixels;
+    if (pixels) {
+      content.detectors = {"rgb"};
+      content.connections = 1;
+    }
+    const BuiltInScene built = built_in_scene(content);
+    CHECK(built.geometry.stack_needed < 24);  // the smallest stack that programs have
+    const Sums sums = trace_on_host(built.plan, built.geometry, 128, 16);
+    CHECK(sums.events[CLRAY_COUNT_STARTED] ==
+          128u * built.plan.layout.shape.views * built.plan.request.replicates * (pixels ? 12 : 1));
+    for (const int event : {CLRAY_COUNT_ESCAPED, CLRAY_COUNT_KILLED, CLRAY_COUNT_CAPPED}) {
+      INFO("event " << event << ", pixels " << pixels);
+      CHECK(sums.events[event] > 0);
+    }
+    for (const int event : {CLRAY_COUNT_NON_FINITE, CLRAY_COUNT_STACK, CLRAY_COUNT_LOST, CLRAY_COUNT_OVERFLOW})
+      CHECK(sums.events[event] == 0);
+    std::size_t filled = 0;
+    for (const Sum value : sums.values) filled += value != 0;
+    CHECK(filled * 3 > sums.values.size());
+  }
+}
+
+TEST_CASE("programs of every kind pass") {
+  std::vector<ProgramContent> contents{simple("mesh", "tabulated"), simple("sphere", "ggx", "pressure")};
+  contents[0].sobol = contents[0].strata = false;
+  contents[1].components = 2;
+  contents[1].lanes = 2;
+  contents[1].scatter = true;
+  contents.push_back(simple("box", "mirror", "rgb"));
+  contents.back().pixels = contents.back().scatter = contents.back().shared_planes = true;
+  contents.push_back(everything());
+  contents.back().detectors = {"delay", "pressure", "delay"};
+  contents.back().specialised = false;
+  for (const ProgramContent& content : contents) {
+    OpenedDevice opened = opened_cpu();
+    const BuiltInScene built = built_in_scene(content);
+    CHECK_NOTHROW(run_traced_self_test(opened, built.plan, content.specialised, KernelFiles(embedded_kernels())));
+  }
+}
+
+TEST_CASE("a program that traces wrongly is refused") {
+  const ProgramContent mesh = simple("mesh", "lambert"), sphere = simple("sphere", "lambert");
+  // Compilers that cut a loop, count bits wrongly, place shapes wrongly.
+  check_refused(mesh, "walk/plain.cl", "k < 4", "k < 3");
+  check_refused(mesh, "trace.cl", "clz(chunks)", "(clz(chunks) + 1u)");
+  check_refused(mesh, "math/sobol.cl", "31u - clz(index)", "30u - clz(index)");
+  check_refused(sphere, "stage/intersect.cl", "v3_sub(point, v3_load(data + CLRAY_SHAPE_ORIGIN))", "point");
+  // And elsewhere: ties, boxes, samples, surfaces, lanes, sums.
+  // And elsewhere: surfaces, sums, strata, lanes, hinges.
+  check_refused(sphere, "brdf/lambert.cl", "CLRAY_INV_PI", "0.3183");
+  check_refused(sphere, "detector/delay.cl", "floor(x)", "(x + 0.5)");
+  check_refused(sphere, "math/strata.cl", "1.0 - along", "along");
+  ProgramContent lanes = simple("sphere", "lambert", "pressure");
+  lanes.lanes = 2;
+  lanes.scatter = true;
+  check_refused(lanes, "stage/scatter.cl", "sum / (f64)CLRAY_LANES", "sum");
+  check_refused(lanes, "detector/books.cl", "1.0 - surface_reflectance", "surface_reflectance");
+  ProgramContent hinged = mesh;
+  hinged.hinged = true;
+  check_refused(hinged, "stage/intersect.cl", "instance->moved", "0");
+}
+
+TEST_CASE("what passed is remembered for that device and program, with a checksum, and costs less than 5 ms") {
+  namespace fs = std::filesystem;
+  OpenedDevice opened = opened_cpu();
+  const BuiltInScene built = built_in_scene(simple("sphere", "lommel-seeliger"));
+  run_traced_self_test(opened, built.plan, true);
+  const std::string what =
+      "traced\n" + program_source(opened, "trace.cl", built.plan.program.options, embedded_kernels());
+  CHECK(remembered(opened, what));
+  CHECK_FALSE(remembered(opened, what + " "));
+  OpenedDevice other = opened_cpu();
+  other.info.driver += " of tomorrow";
+  CHECK_FALSE(remembered(other, what));
+  double best_s = 1e9;
+  for (int i = 0; i < 20; ++i) {
+    const auto start = std::chrono::steady_clock::now();
+    run_traced_self_test(opened, built.plan, true);
+    best_s = std::min(best_s, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  }
+  MESSAGE("warm self-test: " << 1000.0 * best_s << " ms");
+  CHECK(best_s < 0.005);
+}
