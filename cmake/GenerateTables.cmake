@@ -9,7 +9,7 @@ function(clray_rows table macro rows)
   set(def ${PROJECT_SOURCE_DIR}/kernels/${table}/${table}.def)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${def})
   file(READ ${def} text)
-  string(REPLACE ";" "," text "${text}")  # ; would part CMake's lists
+  string(REGEX REPLACE "[][;]" "," text "${text}")  # they mean something in CMake's lists
   string(REGEX REPLACE "\n +" " " text "${text}")  # a row over several lines is one,
   string(REGEX REPLACE "\" +\"" "" text "${text}")  # and so are its parts of a text
   string(REGEX MATCHALL "\n${macro}\\([a-z0-9_]+,[^\n]*" found "${text}")
@@ -40,12 +40,12 @@ function(clray_generate_table table macro)
 endfunction()
 
 # Detectors, for the kernels on the host (host/pipeline/host_pass.cpp): the files of those that look at moments of a
-# path; CLRAY_HOOK_<hook>(X); and CLRAY_DETECTOR_NUMBERS(X) with X(name) for every number that a program is built with,
-# there read from `numbers`.
+# path; CLRAY_HOOK_<hook>(X); and CLRAY_PROGRAM_NUMBERS(X) with X(name) for every number that a device's program is built
+# with (host/pipeline/specialise.cpp), there read from `numbers`.
 function(clray_generate_detectors)
   clray_rows(detector DETECTOR rows)
   set(includes "")
-  set(names "")
+  set(names LANES CONNECTIONS KEPT CONNECT SCATTER SHADOW DELTA ONE_SIDED PLANES INSTANCED WIDE STRATA SOBOL PIXELS)
   foreach(hook hit connect scatter escape end flush)
     set(hook_${hook} "#define CLRAY_HOOK_${hook}(X)")
   endforeach()
@@ -71,13 +71,13 @@ function(clray_generate_detectors)
     endforeach()
   endforeach()
   clray_write(detector_all.inc "${includes}")
-  set(list "#define CLRAY_DETECTOR_NUMBERS(X)")
+  set(list "#define CLRAY_PROGRAM_NUMBERS(X)")
   set(defines "")
   foreach(name IN LISTS names)
     string(APPEND list " X(CLRAY_${name})")
     string(APPEND defines "#define CLRAY_${name} numbers.CLRAY_${name}_\n")
   endforeach()
-  clray_write(detector_numbers.inc
+  clray_write(program_numbers.inc
     "${list}\n${defines}${hook_hit}\n${hook_connect}\n${hook_scatter}\n${hook_escape}\n${hook_end}\n${hook_flush}\n")
 endfunction()
 

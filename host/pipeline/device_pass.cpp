@@ -49,9 +49,8 @@ DevicePass::DevicePass(OpenedDevice& device, const PassPlan& plan, const Geometr
 
 void DevicePass::check_size(const PassPlan& plan) const {
   const double bytes = 8.0 * static_cast<double>(plan.layout.values);
-  const double limit = with_cl_errors(opened_.info.name, [&] {
-    return static_cast<double>(opened_.device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>());
-  });
+  const double limit = with_cl_errors(
+      opened_.info.name, [&] { return static_cast<double>(opened_.device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>()); });
   if (bytes > limit)
     throw Error(ErrorCode::input,
                 fmt::format("the detectors need {:.3g} GiB in one buffer, {} gives at most {:.3g}: fewer bins, pixels, "

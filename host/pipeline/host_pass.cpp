@@ -18,26 +18,8 @@
 #pragma GCC diagnostic ignored "-Wmissing-field-initializers"
 #pragma GCC diagnostic ignored "-Wsign-compare"
 
-#include "generated/detector_numbers.inc"
+#include "generated/program_numbers.inc"
 
-#define CLRAY_PATH_NUMBERS(X)                                                        \
-  X(CLRAY_LANES) X(CLRAY_CONNECTIONS) X(CLRAY_KEPT) X(CLRAY_CONNECT) X(CLRAY_SCATTER) \
-  X(CLRAY_SHADOW) X(CLRAY_DELTA) X(CLRAY_ONE_SIDED) X(CLRAY_PLANES) X(CLRAY_INSTANCED) \
-  X(CLRAY_WIDE) X(CLRAY_STRATA) X(CLRAY_SOBOL) X(CLRAY_PIXELS)
-#define CLRAY_LANES numbers.CLRAY_LANES_
-#define CLRAY_CONNECTIONS numbers.CLRAY_CONNECTIONS_
-#define CLRAY_KEPT numbers.CLRAY_KEPT_
-#define CLRAY_CONNECT numbers.CLRAY_CONNECT_
-#define CLRAY_SCATTER numbers.CLRAY_SCATTER_
-#define CLRAY_SHADOW numbers.CLRAY_SHADOW_
-#define CLRAY_DELTA numbers.CLRAY_DELTA_
-#define CLRAY_ONE_SIDED numbers.CLRAY_ONE_SIDED_
-#define CLRAY_PLANES numbers.CLRAY_PLANES_
-#define CLRAY_INSTANCED numbers.CLRAY_INSTANCED_
-#define CLRAY_WIDE numbers.CLRAY_WIDE_
-#define CLRAY_STRATA numbers.CLRAY_STRATA_
-#define CLRAY_SOBOL numbers.CLRAY_SOBOL_
-#define CLRAY_PIXELS numbers.CLRAY_PIXELS_
 #define CLRAY_TRIANGLES 1
 #define CLRAY_ANALYTIC 1
 #define CLRAY_LANE_ROOM 64
@@ -49,8 +31,7 @@ namespace {
 /// What a device's program has as macros.
 struct ProgramNumbers {
 #define CLRAY_NUMBER(name) u32 name##_ = 0;
-  CLRAY_PATH_NUMBERS(CLRAY_NUMBER)
-  CLRAY_DETECTOR_NUMBERS(CLRAY_NUMBER)
+  CLRAY_PROGRAM_NUMBERS(CLRAY_NUMBER)
 #undef CLRAY_NUMBER
 };
 
@@ -65,8 +46,7 @@ ProgramNumbers numbers_of(const ProgramOptions& options) {
     return define == options.defines.end() ? 0u : static_cast<u32>(std::stoul(define->second));
   };
 #define CLRAY_NUMBER(name) n.name##_ = read(#name);
-  CLRAY_PATH_NUMBERS(CLRAY_NUMBER)
-  CLRAY_DETECTOR_NUMBERS(CLRAY_NUMBER)
+  CLRAY_PROGRAM_NUMBERS(CLRAY_NUMBER)
 #undef CLRAY_NUMBER
   return n;
 }

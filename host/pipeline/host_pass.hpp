@@ -9,8 +9,8 @@
 
 namespace clray {
 
-/// The sums of points [0, points) of every view, replicate and pixel of the plan's first epoch, in work-items of at most
-/// `chunk` points. Same bits as a device's. Throws Error(bug) where host_has_room() says no.
+/// The sums of points [0, points) of every view, replicate and pixel of the plan's first epoch, in work-items of at
+/// most `chunk` points. Same bits as a device's. Throws Error(bug) where host_has_room() says no.
 Sums trace_on_host(const PassPlan& plan, const Geometry& geometry, std::uint32_t points, std::uint32_t chunk);
 
 /// Whether the pass has no more lanes, and no more sums that work-items keep, than the host's kernels have room for.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tables for whoever offers their keys elsewhere (clray/keys.hpp): the rows of brdf.def, shape.def, detector.def, walk.def
-// and the sections of keys.def, as one kind of list.
+// The tables for whoever offers their keys elsewhere (clray/keys.hpp): the rows of brdf.def, shape.def, detector.def,
+// walk.def and the sections of keys.def, as one kind of list.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads the rows of brdf.def, shape.def, detector.def and walk.def, compiled in, into data that the scene reader, the checks,
-// the listings and the packer share. A row that cannot be read is a fault of clray, not of a scene.
+// Reads the rows of brdf.def, shape.def, detector.def and walk.def, compiled in, into data that the scene reader, the
+// checks, the listings and the packer share. A row that cannot be read is a fault of clray, not of a scene.
 #include "scene/tables.hpp"
 
 #include <algorithm>

@@ -17,8 +17,8 @@ static void pressure_record(const Buffers* g, Tally* tally, u32 n, u32 lane, con
   const u32 d = CLRAY_FIRST_pressure + n;
   const u64 at = sum_row(g, d, 0u, lane_row(g, tally, lane)) + surface->component * 6u;
 #ifdef CLRAY_KEPT_pressure_push
-  i64 *own = tally->kept + CLRAY_KEPT_pressure_push + (n * CLRAY_LANES + lane) * sum_width(g, d, 0u) +
-             surface->component * 6u;
+  i64* own =
+      tally->kept + CLRAY_KEPT_pressure_push + (n * CLRAY_LANES + lane) * sum_width(g, d, 0u) + surface->component * 6u;
   for (u32 k = 0; k < 6u; ++k) keep(g, own + k, at + k, values[k], scale, CLRAY_UNIT_LIMIT);
 #else
   for (u32 k = 0; k < 6u; ++k) accumulate(g->sums, g->wide, at + k, values[k], scale, CLRAY_UNIT_LIMIT, g->counters);

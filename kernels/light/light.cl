@@ -20,21 +20,21 @@ static Light light_even(f64 value) {
   return light;
 }
 
-static Light light_scaled(const Light *light, f64 factor) {
+static Light light_scaled(const Light* light, f64 factor) {
   Light scaled;
   for (u32 lane = 0; lane < CLRAY_LANES; ++lane) scaled.lane[lane] = light->lane[lane] * factor;
   return scaled;
 }
 
 /// What `after` has more than `before`.
-static Light light_gain(const Light *after, const Light *before) {
+static Light light_gain(const Light* after, const Light* before) {
   Light gain;
   for (u32 lane = 0; lane < CLRAY_LANES; ++lane) gain.lane[lane] = after->lane[lane] - before->lane[lane];
   return gain;
 }
 
 /// The largest over the lanes.
-static f64 light_largest(const Light *light) {
+static f64 light_largest(const Light* light) {
   f64 largest = 0.0;
   for (u32 lane = 0; lane < CLRAY_LANES; ++lane) largest = f64_max(largest, light->lane[lane]);
   return largest;

@@ -10,10 +10,10 @@
 
 #define CLRAY_WIDE_LIMIT 274877906944.0  // 2^38: with 2^24 contributions a slice the sum stays below 2^62
 
-static void count_event(volatile __global i64 *counters, u32 which) { atomic_add_i64(counters + which, 1); }
+static void count_event(volatile __global i64* counters, u32 which) { atomic_add_i64(counters + which, 1); }
 
 /// Splits `value` into an integer for the first (returned) or second (*wide) accumulator.
-static i64 to_fixed(f64 value, f64 scale, f64 limit, i64 *wide, volatile __global i64 *counters) {
+static i64 to_fixed(f64 value, f64 scale, f64 limit, i64* wide, volatile __global i64* counters) {
   *wide = 0;
   const f64 size = fabs(value);
   if (size <= limit) return convert_long_rte(value * scale);
@@ -28,8 +28,8 @@ static i64 to_fixed(f64 value, f64 scale, f64 limit, i64 *wide, volatile __globa
 }
 
 /// Adds `value` to accumulator `at`.
-static void accumulate(volatile __global i64 *sums, volatile __global i64 *wide_sums, u64 at, f64 value, f64 scale,
-                       f64 limit, volatile __global i64 *counters) {
+static void accumulate(volatile __global i64* sums, volatile __global i64* wide_sums, u64 at, f64 value, f64 scale,
+                       f64 limit, volatile __global i64* counters) {
   i64 wide;
   const i64 q = to_fixed(value, scale, limit, &wide, counters);
   if (q != 0) atomic_add_i64(sums + at, q);

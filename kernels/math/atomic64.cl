@@ -15,8 +15,8 @@
 #define CLRAY_LOW_WORD 1
 #endif
 
-CLRAY_FN void atomic_add_i64(volatile __global i64 *p, i64 v) {
-  volatile __global u32 *word = (volatile __global u32 *)p;
+CLRAY_FN void atomic_add_i64(volatile __global i64* p, i64 v) {
+  volatile __global u32* word = (volatile __global u32*)p;
   const u32 low = (u32)v;
   const u32 before = atomic_add(word + CLRAY_LOW_WORD, low);
   const u32 carry = before + low < low ? 1u : 0u;  // lint: integer
@@ -28,7 +28,7 @@ CLRAY_FN void atomic_add_i64(volatile __global i64 *p, i64 v) {
 
 #else
 
-CLRAY_FN void atomic_add_i64(volatile __global i64 *p, i64 v) { atom_add(p, v); }
+CLRAY_FN void atomic_add_i64(volatile __global i64* p, i64 v) { atom_add(p, v); }
 
 #endif
 

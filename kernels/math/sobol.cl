@@ -24,7 +24,7 @@ typedef struct Sampler {
 } Sampler;
 
 /// Four seeds (or random words) of dimensions 4·group-2 … 4·group+1.
-static void sampler_words(const Sampler *s, u32 group, u32 index, u32 out[4]) {
+static void sampler_words(const Sampler* s, u32 group, u32 index, u32 out[4]) {
   const u32 counter[4] = {s->replicate, group | (s->epoch << 24), index, s->stream};
   philox4x32(s->key0, s->key1, counter, out);
 }
@@ -48,8 +48,8 @@ static u32 scramble_reversed(u32 x, u32 seed) {
 }
 
 /// Point `index` of Sobol dimension `dimension`, bits reversed (as the directions are stored).
-static u32 sobol_reversed(const __global u32 *directions, u32 dimension, u32 index) {
-  const __global u32 *column = directions + 32u * dimension;
+static u32 sobol_reversed(const __global u32* directions, u32 dimension, u32 index) {
+  const __global u32* column = directions + 32u * dimension;
   u32 x = 0;
   while (index != 0u) {
     const u32 bit = 31u - clz(index);
@@ -63,7 +63,7 @@ static u32 sobol_reversed(const __global u32 *directions, u32 dimension, u32 ind
 static f64 unit_from_bits(u32 bits) { return ((f64)bits + 0.5) * CLRAY_TWO_TO_MINUS_32; }
 
 /// `count` coordinates of dimensions 4·group-2+skip …, of the sampler's current point.
-static void sampler_draw(const Sampler *s, const __global u32 *directions, u32 group, u32 skip, u32 count, f64 *out) {
+static void sampler_draw(const Sampler* s, const __global u32* directions, u32 group, u32 skip, u32 count, f64* out) {
   u32 words[4];
   const u32 first = 4u * group + skip - 2u;
   if (CLRAY_SOBOL && first + count <= CLRAY_SOBOL_DIMENSIONS) {
@@ -77,14 +77,14 @@ static void sampler_draw(const Sampler *s, const __global u32 *directions, u32 g
 }
 
 /// Before a sampler's first point, `origin`. Points whose indices differ from it in few bits cost least.
-static void sampler_begin(Sampler *s, const __global u32 *directions, u32 origin) {
+static void sampler_begin(Sampler* s, const __global u32* directions, u32 origin) {
   s->index = s->origin = origin;
   sampler_words(s, 0u, 0xffffffffu, s->words);
   for (u32 k = 0; CLRAY_SOBOL && k < 2u; ++k) s->base[k] = sobol_reversed(directions, k, origin);
 }
 
 /// Dimensions 0 and 1 of the current point: as sampler_draw, with what it shares with the origin kept.
-static void sampler_draw_first(Sampler *s, const __global u32 *directions, f64 *out) {
+static void sampler_draw_first(Sampler* s, const __global u32* directions, f64* out) {
   if (!CLRAY_SOBOL) {
     sampler_draw(s, directions, 0u, 2u, 2u, out);
     return;

@@ -9,8 +9,8 @@
 
 /// The stratum, of `count` from `first` on, that u in (0,1) falls in; *place: where in it, in (0,1); *size: its width,
 /// 1 … 2^32.
-static u32 strata_choose(const __global ClrayStratum *strata, u32 first, u32 count, f64 u, f64 *place, f64 *size) {
-  const __global ClrayStratum *s = strata + first;
+static u32 strata_choose(const __global ClrayStratum* strata, u32 first, u32 count, f64 u, f64* place, f64* size) {
+  const __global ClrayStratum* s = strata + first;
   const f64 x = u * CLRAY_TWO_TO_32;
   u32 k = s[min((u32)(u * (f64)count), count - 1u)].guide;
   while (k + 1u < count && x > (f64)s[k].last + 1.0) ++k;
@@ -21,7 +21,7 @@ static u32 strata_choose(const __global ClrayStratum *strata, u32 first, u32 cou
 }
 
 /// The point of the unit square, x + r·y <= s for a share q of it, at `along` of the line x + r·y = s.
-static void strata_square(f64 q, f64 along, f64 r, f64 *x, f64 *y) {
+static void strata_square(f64 q, f64 along, f64 r, f64* x, f64* y) {
   const f64 rest = 1.0 - q, corner = 0.5 * r;
   f64 s = q + corner;
   if (q < corner) s = sqrt(2.0 * r * q);
@@ -36,13 +36,14 @@ static void strata_square(f64 q, f64 along, f64 r, f64 *x, f64 *y) {
 }
 
 /// Carries u to where its stratum lies in the beam's rectangle; returns the ray's share of the beam.
-static f64 strata_place(const __global ClrayStratum *strata, const __global ClrayView *view, f64 u[2]) {
+static f64 strata_place(const __global ClrayStratum* strata, const __global ClrayView* view, f64 u[2]) {
   f64 across, along, strip_size, piece_size;
   const u32 strip = strata_choose(strata, view->first_stratum, view->strips, u[0], &across, &strip_size);
   const u32 piece = strata_choose(strata, strata[strip].a, strata[strip].b, u[1], &along, &piece_size);
   const u32 a = strata[piece].a, b = strata[piece].b;
   const f64 from = (f64)(b & 0xffffu), to = (f64)(b >> 16) + 1.0;
-  const f64 r = (f64)((a >> CLRAY_PIECE_STEEPNESS_SHIFT) & (2u * CLRAY_PIECE_STEEPNESS - 1u)) / (f64)CLRAY_PIECE_STEEPNESS;
+  const f64 r =
+      (f64)((a >> CLRAY_PIECE_STEEPNESS_SHIFT) & (2u * CLRAY_PIECE_STEEPNESS - 1u)) / (f64)CLRAY_PIECE_STEEPNESS;
   f64 x, y;
   if (a & CLRAY_PIECE_REVERSE) along = 1.0 - along;
   strata_square(fma(across, to - from, from) / (f64)CLRAY_PIECE_PARTS, along, r, &x, &y);

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stage 1, generate: a primary ray of a view. A beam's rays fill the rectangle that bounds the body across the direction
-// to the source, or the strata of it that the body can be in (host/pipeline/beam_strata.hpp); a picture's fill their pixel.
+// Stage 1, generate: a primary ray of a view. A beam's rays fill the rectangle that bounds the body across the
+// direction to the source, or the strata of it that the body can be in (host/pipeline/beam_strata.hpp); a picture's
+// fill their pixel.
 #ifndef CLRAY_GENERATE_CL
 #define CLRAY_GENERATE_CL
 
-static Ray stage_generate(const Buffers *g, Sampler *sampler, const Tally *tally, Path *path) {
-  const __global ClrayView *view = g->views + tally->view;
+static Ray stage_generate(const Buffers* g, Sampler* sampler, const Tally* tally, Path* path) {
+  const __global ClrayView* view = g->views + tally->view;
   f64 u[2];
   sampler_draw_first(sampler, g->directions, u);
   if (CLRAY_PIXELS) {

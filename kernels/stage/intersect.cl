@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Stage 2, intersect: the nearest hit of a ray, or whether anything is in its way. fp32 boxes cull, fp64 decides. Among
-// faces at equal distance the one whose lit side looks at the ray wins, then the smaller canonical id. With hinged parts the top level of the BVH holds instances, each with a
-// tree of its own in its own frame; motions are rigid, so distances are common to all frames.
+// faces at equal distance the one whose lit side looks at the ray wins, then the smaller canonical id. With hinged
+// parts the top level of the BVH holds instances, each with a tree of its own in its own frame; motions are rigid, so
+// distances are common to all frames.
 #ifndef CLRAY_INTERSECT_CL
 #define CLRAY_INTERSECT_CL
 
@@ -25,35 +26,35 @@ static LocalRay local_ray(vec3 o, vec3 d, u32 skip_plane) {
   return r;
 }
 
-static vec3 rotate(const __global f64 *m, vec3 a) {
+static vec3 rotate(const __global f64* m, vec3 a) {
   return v3(fma(m[0], a.x, fma(m[1], a.y, m[2] * a.z)), fma(m[3], a.x, fma(m[4], a.y, m[5] * a.z)),
             fma(m[6], a.x, fma(m[7], a.y, m[8] * a.z)));
 }
 
-static vec3 rotate_back(const __global f64 *m, vec3 a) {
+static vec3 rotate_back(const __global f64* m, vec3 a) {
   return v3(fma(m[0], a.x, fma(m[3], a.y, m[6] * a.z)), fma(m[1], a.x, fma(m[4], a.y, m[7] * a.z)),
             fma(m[2], a.x, fma(m[5], a.y, m[8] * a.z)));
 }
 
-CLRAY_FN vec3 to_instance(const __global ClrayInstance *instance, vec3 point) {
+CLRAY_FN vec3 to_instance(const __global ClrayInstance* instance, vec3 point) {
   return v3_add(rotate(instance->rotation, point), v3_load(instance->translation));
 }
 
-CLRAY_FN vec3 shape_to_local(const __global f64 *data, vec3 point) {
+CLRAY_FN vec3 shape_to_local(const __global f64* data, vec3 point) {
   const f64 scale = data[CLRAY_SHAPE_SCALE];
   const vec3 moved = rotate(data, v3_sub(point, v3_load(data + CLRAY_SHAPE_ORIGIN)));
   return v3(moved.x / scale, moved.y / scale, moved.z / scale);
 }
 
 /// Whether a material's back reflects; lanes that differ in it are never in one pass.
-CLRAY_FN u32 two_sided(const Buffers *g, u32 material) {
+CLRAY_FN u32 two_sided(const Buffers* g, u32 material) {
   return !CLRAY_ONE_SIDED || (g->materials[material].flags & CLRAY_MATERIAL_TWO_SIDED) != 0u;
 }
 
 /// Puts a hit of a face that shares its plane where the ray meets that plane. Returns 0 where the ray leaves the plane.
-CLRAY_FN i32 meet_plane(const Buffers *g, const LocalRay *ray, const __global ClrayPrimitive *primitive, u32 part, f64 *t,
-                      u32 *plane, u32 *rank) {
-  const __global f64 *p = g->shapes + primitive->planes + CLRAY_PLANE_SIZE * part;
+CLRAY_FN i32 meet_plane(const Buffers* g, const LocalRay* ray, const __global ClrayPrimitive* primitive, u32 part,
+                        f64* t, u32* plane, u32* rank) {
+  const __global f64* p = g->shapes + primitive->planes + CLRAY_PLANE_SIZE * part;
   *plane = (u32)p[CLRAY_PLANE_NUMBER];
   if (*plane == 0u) return 1;
   if (*plane == ray->skip_plane) return 0;
@@ -66,9 +67,9 @@ CLRAY_FN i32 meet_plane(const Buffers *g, const LocalRay *ray, const __global Cl
 }
 
 /// Tests one primitive; a nearer hit, or one as near that goes first, replaces *hit.
-static void test_primitive(const Buffers *g, const LocalRay *ray, u32 index, u32 instance, Hit *hit) {
-  const __global ClrayPrimitive *primitive = g->primitives + index;
-  const __global f64 *data = g->shapes + primitive->data;
+static void test_primitive(const Buffers* g, const LocalRay* ray, u32 index, u32 instance, Hit* hit) {
+  const __global ClrayPrimitive* primitive = g->primitives + index;
+  const __global f64* data = g->shapes + primitive->data;
   f64 t, t_max = hit->t;
   u32 part = 0u, plane = 0u, rank = 0u;
   vec3 weights = v3(0.0, 0.0, 0.0);
@@ -105,8 +106,8 @@ static void test_primitive(const Buffers *g, const LocalRay *ray, u32 index, u32
 }
 
 /// Walks one tree; with `any` it stops at the first hit of all.
-static void intersect_tree(const Buffers *g, const Ray *ray, const LocalRay *placed, vec3 centre, f64 scale, u32 root,
-                           u32 instance, u32 any, Hit *hit) {
+static void intersect_tree(const Buffers* g, const Ray* ray, const LocalRay* placed, vec3 centre, f64 scale, u32 root,
+                           u32 instance, u32 any, Hit* hit) {
   BvhWalk walk;
   u32 first, count;
   bvh_begin(&walk, root, placed->o, placed->d, centre, scale);
@@ -120,8 +121,8 @@ static void intersect_tree(const Buffers *g, const Ray *ray, const LocalRay *pla
 }
 
 /// The nearest hit (or, with `any`, some hit): 1, or 0 when the ray escapes.
-static i32 intersect(const Buffers *g, const Ray *ray, u32 view, u32 any, Hit *hit) {
-  const __global ClrayView *from = g->views + view;
+static i32 intersect(const Buffers* g, const Ray* ray, u32 view, u32 any, Hit* hit) {
+  const __global ClrayView* from = g->views + view;
   const vec3 centre = v3_load(from->box_centre);
   hit->t = INFINITY;
   hit->primitive = 0xffffffffu;
@@ -139,11 +140,10 @@ static i32 intersect(const Buffers *g, const Ray *ray, u32 view, u32 any, Hit *h
   bvh_begin(&walk, from->root, ray->o, ray->d, centre, from->box_scale);
   while (bvh_next(&walk, g->nodes, hit->t, &first, &count, g->counters)) {
     for (u32 k = first; k < first + count; ++k) {
-      const __global ClrayInstance *instance = g->instances + k;
-      const LocalRay placed =
-          instance->moved
-              ? local_ray(to_instance(instance, ray->o), rotate(instance->rotation, ray->d), ray->skip_plane)
-              : local_ray(ray->o, ray->d, ray->skip_plane);
+      const __global ClrayInstance* instance = g->instances + k;
+      const LocalRay placed = instance->moved ? local_ray(to_instance(instance, ray->o),
+                                                          rotate(instance->rotation, ray->d), ray->skip_plane)
+                                              : local_ray(ray->o, ray->d, ray->skip_plane);
       intersect_tree(g, ray, &placed, v3_load(instance->box_centre), instance->box_scale, instance->root, k, any, hit);
       if (any && hit->primitive != 0xffffffffu) return 1;
     }
@@ -154,9 +154,9 @@ static i32 intersect(const Buffers *g, const Ray *ray, u32 view, u32 any, Hit *h
 static f64 size_of(vec3 a) { return fabs(a.x) + fabs(a.y) + fabs(a.z); }
 
 /// Point, normal and material of a hit.
-static Surface hit_surface(const Buffers *g, const Ray *ray, const Hit *hit) {
-  const __global ClrayPrimitive *primitive = g->primitives + hit->primitive;
-  const __global f64 *data = g->shapes + primitive->data;
+static Surface hit_surface(const Buffers* g, const Ray* ray, const Hit* hit) {
+  const __global ClrayPrimitive* primitive = g->primitives + hit->primitive;
+  const __global f64* data = g->shapes + primitive->data;
   ShapeSurface s;
 #if CLRAY_ANALYTIC
 #if CLRAY_TRIANGLES
@@ -166,7 +166,7 @@ static Surface hit_surface(const Buffers *g, const Ray *ray, const Hit *hit) {
 #endif
   {
     vec3 o = ray->o, d = ray->d;
-    const __global ClrayInstance *instance = g->instances + hit->instance;
+    const __global ClrayInstance* instance = g->instances + hit->instance;
     if (CLRAY_INSTANCED && instance->moved) {
       o = to_instance(instance, o);
       d = rotate(instance->rotation, d);
@@ -184,7 +184,7 @@ static Surface hit_surface(const Buffers *g, const Ray *ray, const Hit *hit) {
   s = triangle_surface(data, hit->weights);
 #endif
   if (CLRAY_INSTANCED && g->instances[hit->instance].moved) {
-    const __global ClrayInstance *instance = g->instances + hit->instance;
+    const __global ClrayInstance* instance = g->instances + hit->instance;
     const vec3 moved = v3_load(instance->translation);
     s.point = rotate_back(instance->rotation, v3_sub(s.point, moved));
     s.normal = rotate_back(instance->rotation, s.normal);
@@ -212,7 +212,7 @@ static Surface hit_surface(const Buffers *g, const Ray *ray, const Hit *hit) {
 }
 
 /// The stage: 1 and the surface that the ray hits first, or 0.
-static i32 stage_intersect(const Buffers *g, const Ray *ray, u32 view, Surface *surface) {
+static i32 stage_intersect(const Buffers* g, const Ray* ray, u32 view, Surface* surface) {
   Hit hit;
   if (!intersect(g, ray, view, 0u, &hit)) return 0;
   *surface = hit_surface(g, ray, &hit);
@@ -225,7 +225,7 @@ static i32 stage_intersect(const Buffers *g, const Ray *ray, u32 view, Surface *
 }
 
 /// A ray that leaves a surface toward d, started off the surface by more than the point's error.
-static Ray ray_from(const Surface *surface, vec3 d) {
+static Ray ray_from(const Surface* surface, vec3 d) {
   Ray ray;
   ray.o = v3_fma(surface->error, surface->normal, surface->point);
   ray.d = d;
@@ -236,7 +236,7 @@ static Ray ray_from(const Surface *surface, vec3 d) {
 }
 
 /// Whether anything lies between a surface and infinity in direction d.
-CLRAY_FN i32 shadowed(const Buffers *g, const Surface *surface, u32 view, vec3 d) {
+CLRAY_FN i32 shadowed(const Buffers* g, const Surface* surface, u32 view, vec3 d) {
   const Ray ray = ray_from(surface, d);
   Hit hit;
   return intersect(g, &ray, view, 1u, &hit);

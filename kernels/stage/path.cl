@@ -5,12 +5,12 @@
 #define CLRAY_PATH_CL
 
 /// Length of the path's last piece: from the plane across the beam through the reference point, or from a surface.
-static f64 piece_length(const Buffers *g, const Tally *tally, u32 bounce, vec3 from, vec3 to) {
+static f64 piece_length(const Buffers* g, const Tally* tally, u32 bounce, vec3 from, vec3 to) {
   if (bounce > 0u) return v3_length(v3_sub(to, from));
   return -v3_dot(v3_load(g->views[tally->view].toward), v3_sub(to, v3_load(g->pass->reference)));
 }
 
-static void trace_path(const Buffers *g, Sampler *sampler, Tally *tally) {
+static void trace_path(const Buffers* g, Sampler* sampler, Tally* tally) {
   Path path;
   Surface surface;
   Ray ray = stage_generate(g, sampler, tally, &path);

@@ -6,11 +6,11 @@
 
 /// Carries products and densities of all lanes through a reflection toward wo, and the throughputs that follow from
 /// them. A common power of two keeps both in range over any number of bounces; no throughput depends on it.
-CLRAY_FN void scatter_lanes(const Buffers *g, const Surface *surface, vec3 wo, f64 hero_pdf, Path *path) {
+CLRAY_FN void scatter_lanes(const Buffers* g, const Surface* surface, vec3 wo, f64 hero_pdf, Path* path) {
   const BrdfAngles angles = brdf_angles(surface->normal, surface->toward, wo);
   f64 sum = 0.0;
   for (u32 lane = 0; lane < CLRAY_LANES; ++lane) {
-    const __global ClrayMaterial *m = lane_material(g, lane, surface->material);
+    const __global ClrayMaterial* m = lane_material(g, lane, surface->material);
     path->product.lane[lane] *= brdf_eval(m, g->tables, angles) * angles.mu_o / hero_pdf;
     path->density.lane[lane] *= brdf_pdf(m, g->tables, angles) / hero_pdf;
     sum += path->density.lane[lane];
@@ -22,10 +22,10 @@ CLRAY_FN void scatter_lanes(const Buffers *g, const Surface *surface, vec3 wo, f
   path->density = light_scaled(&path->density, CLRAY_TWO_TO_MINUS_32);
 }
 
-/// A direction for the path, and its throughput after the reflection; 0 when all that is left is absorbed. The lane that
-/// samples is chosen by the first bounce's lobe coordinate, whose rest then chooses the lobe: an even choice that stays
-/// stratified.
-CLRAY_FN u32 scatter(const Buffers *g, f64 u[4], u32 bounce, const Surface *surface, Path *path, Ray *ray) {
+/// A direction for the path, and its throughput after the reflection; 0 when all that is left is absorbed. The lane
+/// that samples is chosen by the first bounce's lobe coordinate, whose rest then chooses the lobe: an even choice that
+/// stays stratified.
+CLRAY_FN u32 scatter(const Buffers* g, f64 u[4], u32 bounce, const Surface* surface, Path* path, Ray* ray) {
   if (CLRAY_LANES > 1 && bounce == 0u) {
     const f64 x = u[0] * (f64)CLRAY_LANES;
     path->hero = min((u32)x, CLRAY_LANES - 1u);
@@ -35,7 +35,7 @@ CLRAY_FN u32 scatter(const Buffers *g, f64 u[4], u32 bounce, const Surface *surf
   vec3 t, b;
   v3_frame(surface->normal, &t, &b);
   const vec3 wi = v3(v3_dot(surface->toward, t), v3_dot(surface->toward, b), surface->mu);
-  const __global ClrayMaterial *hero = lane_material(g, path->hero, surface->material);
+  const __global ClrayMaterial* hero = lane_material(g, path->hero, surface->material);
   const BrdfSample sample = brdf_sample(hero, g->tables, wi, u[0], u[1], u[2]);
   if (!sample.ok) return 0u;
   const vec3 wo = v3_unit(v3_fma(sample.wo.x, t, v3_fma(sample.wo.y, b, v3_scale(sample.wo.z, surface->normal))));
@@ -49,8 +49,8 @@ CLRAY_FN u32 scatter(const Buffers *g, f64 u[4], u32 bounce, const Surface *surf
 }
 
 /// The stage: chooses where the path goes on.
-static Scattering stage_scatter(const Buffers *g, const Sampler *sampler, u32 bounce, const Surface *surface, Path *path,
-                                Ray *ray) {
+static Scattering stage_scatter(const Buffers* g, const Sampler* sampler, u32 bounce, const Surface* surface,
+                                Path* path, Ray* ray) {
   Scattering s;
   s.before = path->throughput;
   s.gain = light_even(0.0);
@@ -70,8 +70,9 @@ static Scattering stage_scatter(const Buffers *g, const Sampler *sampler, u32 bo
 
 /// The stage: Russian roulette, from the third bounce on, on the largest part of its share that the path still carries.
 /// It survives with probability q and is raised by 1/q, so the mean stays. The share itself has no say: a path that
-/// stands for little of the beam is as likely to go on as any. Returns whether the path lives; a dead one carries nothing.
-static i32 stage_roulette(u32 bounce, Path *path, Scattering *s) {
+/// stands for little of the beam is as likely to go on as any. Returns whether the path lives; a dead one carries
+/// nothing.
+static i32 stage_roulette(u32 bounce, Path* path, Scattering* s) {
   if (!CLRAY_SCATTER) return 0;
   const f64 left = light_largest(&path->throughput) / path->share;
   if (s->goes_on && (bounce < 2u || left >= 1.0)) return 1;

@@ -5,19 +5,19 @@
 #ifndef CLRAY_SHADE_CL
 #define CLRAY_SHADE_CL
 
-CLRAY_FN const __global ClrayConnection *connection_of(const Buffers *g, const Tally *tally, u32 c) {
+CLRAY_FN const __global ClrayConnection* connection_of(const Buffers* g, const Tally* tally, u32 c) {
   return g->connections + tally->view * CLRAY_CONNECTIONS + c;
 }
 
 /// Path length from a point to a connection in direction o, relative to the reference point.
-CLRAY_FN f64 length_toward(const Buffers *g, vec3 point, vec3 o) {
+CLRAY_FN f64 length_toward(const Buffers* g, vec3 point, vec3 o) {
   return v3_dot(o, v3_sub(point, v3_load(g->pass->reference)));
 }
 
 /// Weights toward a connection, per lane: 0 when the surface does not see it. On the first bounce of a monostatic view
 /// what is lit is seen: no shadow ray.
-CLRAY_FN i32 shade(const Buffers *g, const Surface *surface, const Path *path, u32 view, u32 bounce,
-                   const __global ClrayConnection *connection, Light *weights) {
+CLRAY_FN i32 shade(const Buffers* g, const Surface* surface, const Path* path, u32 view, u32 bounce,
+                   const __global ClrayConnection* connection, Light* weights) {
   const vec3 o = v3_load(connection->direction);
   if (!surface->lit || !(surface->mu > 0.0) || !(v3_dot(surface->normal, o) > 0.0)) return 0;
   const BrdfAngles angles = brdf_angles(surface->normal, surface->toward, o);
@@ -30,10 +30,10 @@ CLRAY_FN i32 shade(const Buffers *g, const Surface *surface, const Path *path, u
 }
 
 /// The stage: records the light that each connection receives from a surface.
-static void stage_shade(const Buffers *g, Tally *tally, u32 bounce, const Surface *surface, const Path *path) {
+static void stage_shade(const Buffers* g, Tally* tally, u32 bounce, const Surface* surface, const Path* path) {
   if (CLRAY_MIRRORS_FIRST && bounce == 0u) return;
   for (u32 c = 0; CLRAY_CONNECT && c < CLRAY_CONNECTIONS; ++c) {
-    const __global ClrayConnection *connection = connection_of(g, tally, c);
+    const __global ClrayConnection* connection = connection_of(g, tally, c);
     Light weights;
     if (!shade(g, surface, path, tally->view, bounce, connection, &weights)) continue;
     const f64 out = length_toward(g, surface->point, v3_load(connection->direction));
@@ -43,11 +43,11 @@ static void stage_shade(const Buffers *g, Tally *tally, u32 bounce, const Surfac
 
 /// Light that leaves the body from a mirror: a connection receives it through its cone. Returns whether no connection
 /// has one.
-static u32 shade_mirror(const Buffers *g, Tally *tally, const Path *path, const Ray *ray, const Surface *last) {
+static u32 shade_mirror(const Buffers* g, Tally* tally, const Path* path, const Ray* ray, const Surface* last) {
   if (!(CLRAY_CONNECT && CLRAY_DELTA && path->delta)) return 0u;
   u32 blind = 1u;
   for (u32 c = 0; c < CLRAY_CONNECTIONS; ++c) {
-    const __global ClrayConnection *connection = connection_of(g, tally, c);
+    const __global ClrayConnection* connection = connection_of(g, tally, c);
     const vec3 o = v3_load(connection->direction);
     const vec3 chord = v3_sub(ray->d, o);
     if (connection->acceptance_chord2 > 0.0) blind = 0u;

@@ -9,7 +9,7 @@
 
 /// Every buffer of a pass.
 typedef struct Buffers {
-#define CLRAY_BUFFER(type, name) type *name;
+#define CLRAY_BUFFER(type, name) type* name;
   CLRAY_BUFFERS(CLRAY_BUFFER)
 #undef CLRAY_BUFFER
 } Buffers;
@@ -41,14 +41,14 @@ typedef struct Surface {
   u32 material;  // column of the material table
   u32 component;
   u32 primitive, instance;
-  u32 flat;      // no ray that leaves the primitive can hit it
-  u32 plane;     // number of the shared plane it lies in; 0: none
-  u32 lit;       // 0: the black back of a one-sided material
+  u32 flat;   // no ray that leaves the primitive can hit it
+  u32 plane;  // number of the shared plane it lies in; 0: none
+  u32 lit;    // 0: the black back of a one-sided material
 } Surface;
 
 /// A path between its start and its current surface. Lanes share its directions: one of them, drawn evenly, samples all
-/// (hero wavelengths, Wilkie et al. 2014). Lane l is worth f_l/((1/L)·sum_m p_m), with f and p the products of f·mu_o and
-/// of the densities along the path. Both are kept over the density of the lane that samples.
+/// (hero wavelengths, Wilkie et al. 2014). Lane l is worth f_l/((1/L)·sum_m p_m), with f and p the products of f·mu_o
+/// and of the densities along the path. Both are kept over the density of the lane that samples.
 typedef struct Path {
   f64 length;        // m, from the start plane through the reference point
   f64 share;         // of the beam (or pixel) that the path stands for

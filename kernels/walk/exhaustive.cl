@@ -9,7 +9,7 @@ typedef struct BvhWalk {
   u32 stack[CLRAY_STACK];
 } BvhWalk;
 
-static void bvh_begin(BvhWalk *walk, u32 root, vec3 o, vec3 d, vec3 centre, f64 scale) {
+static void bvh_begin(BvhWalk* walk, u32 root, vec3 o, vec3 d, vec3 centre, f64 scale) {
   (void)o;
   (void)d;
   (void)centre;
@@ -18,8 +18,8 @@ static void bvh_begin(BvhWalk *walk, u32 root, vec3 o, vec3 d, vec3 centre, f64 
   walk->top = 1;
 }
 
-static i32 bvh_next(BvhWalk *walk, const __global ClrayNode *nodes, f64 t_max, u32 *first, u32 *count,
-                    volatile __global i64 *counters) {
+static i32 bvh_next(BvhWalk* walk, const __global ClrayNode* nodes, f64 t_max, u32* first, u32* count,
+                    volatile __global i64* counters) {
   (void)t_max;
   while (walk->top > 0) {
     const u32 child = walk->stack[--walk->top];

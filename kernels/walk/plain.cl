@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Walking the linear BVH, a ray at a time: hands out, nearest first, the leaves whose boxes it may hit before t_max. Boxes only
-// cull: they are fp32, rounded outward in the box frame, and the ray is widened by more than its own rounding, so no
-// box that the fp64 ray touches is ever missed. Slab test after Kay & Kajiya (1986); widening after Ize (2013),
-// "Robust BVH ray traversal".
+// Walking the linear BVH, a ray at a time: hands out, nearest first, the leaves whose boxes it may hit before t_max.
+// Boxes only cull: they are fp32, rounded outward in the box frame, and the ray is widened by more than its own
+// rounding, so no box that the fp64 ray touches is ever missed. Slab test after Kay & Kajiya (1986); widening after Ize
+// (2013), "Robust BVH ray traversal".
 #ifndef CLRAY_WALK_PLAIN_CL
 #define CLRAY_WALK_PLAIN_CL
 
@@ -10,7 +10,7 @@
 typedef struct BvhWalk {
   f32 near_x, near_y, near_z, far_x, far_y, far_z;  // the ray's origin, widened toward each slab
   f32 inv_x, inv_y, inv_z;
-  u32 row_x, row_y, row_z;                          // rows of ClrayNode::bounds of the near slabs
+  u32 row_x, row_y, row_z;  // rows of ClrayNode::bounds of the near slabs
   f64 scale;
   i32 top;
   u32 stack[CLRAY_STACK];
@@ -24,7 +24,7 @@ static f32 bvh_inverse(f64 d) {
   return (f32)(1.0 / d);
 }
 
-static void bvh_axis(f64 o, f64 d, u32 axis, f32 *near, f32 *far, f32 *inv, u32 *row) {
+static void bvh_axis(f64 o, f64 d, u32 axis, f32* near, f32* far, f32* inv, u32* row) {
   const f32 rounded = (f32)o;
   const f32 pad = (fabs(rounded) + 1.0f) * 2.384185791015625e-7f;  // 2^-22
   const bool negative = d < 0.0;
@@ -35,7 +35,7 @@ static void bvh_axis(f64 o, f64 d, u32 axis, f32 *near, f32 *far, f32 *inv, u32 
 }
 
 /// Starts at `root` with the ray o + t·d (d a unit vector) in a frame whose boxes are (x − centre)·scale.
-static void bvh_begin(BvhWalk *walk, u32 root, vec3 o, vec3 d, vec3 centre, f64 scale) {
+static void bvh_begin(BvhWalk* walk, u32 root, vec3 o, vec3 d, vec3 centre, f64 scale) {
   const vec3 from = v3_scale(scale, v3_sub(o, centre));
   bvh_axis(from.x, d.x, 0u, &walk->near_x, &walk->far_x, &walk->inv_x, &walk->row_x);
   bvh_axis(from.y, d.y, 1u, &walk->near_y, &walk->far_y, &walk->inv_y, &walk->row_y);
@@ -47,8 +47,8 @@ static void bvh_begin(BvhWalk *walk, u32 root, vec3 o, vec3 d, vec3 centre, f64 
 }
 
 /// Opens one inner node: pushes the children that may be hit before t_max, the nearest last.
-static void bvh_open(BvhWalk *walk, const __global ClrayNode *node, f32 t_max, volatile __global i64 *counters) {
-  const __global f32 *bounds = &node->bounds[0][0];
+static void bvh_open(BvhWalk* walk, const __global ClrayNode* node, f32 t_max, volatile __global i64* counters) {
+  const __global f32* bounds = &node->bounds[0][0];
   const float4 nx = (vload4(walk->row_x, bounds) - walk->near_x) * walk->inv_x;
   const float4 ny = (vload4(walk->row_y, bounds) - walk->near_y) * walk->inv_y;
   const float4 nz = (vload4(walk->row_z, bounds) - walk->near_z) * walk->inv_z;
@@ -84,8 +84,8 @@ static void bvh_open(BvhWalk *walk, const __global ClrayNode *node, f32 t_max, v
 }
 
 /// The next leaf that the ray may hit at t <= t_max: 1 and its range of primitives, or 0 when there is none.
-static i32 bvh_next(BvhWalk *walk, const __global ClrayNode *nodes, f64 t_max, u32 *first, u32 *count,
-                    volatile __global i64 *counters) {
+static i32 bvh_next(BvhWalk* walk, const __global ClrayNode* nodes, f64 t_max, u32* first, u32* count,
+                    volatile __global i64* counters) {
   const f32 limit = (f32)(t_max * walk->scale) * 1.00000095367432f + 9.5367431640625e-7f;
   while (walk->top > 0) {
     const i32 at = --walk->top;

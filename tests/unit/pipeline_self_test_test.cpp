@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The self-test that traces passes here for programs of every kind, and refuses one that traces wrongly (played by edits
-// of the kernels' text). The host's kernels, which it is held against, give a device's bits for other scenes as well.
+// The self-test that traces passes here for programs of every kind, and refuses one that traces wrongly (played by
+// edits of the kernels' text). The host's kernels, which it is held against, give a device's bits for other scenes as
+// well.
 #include <doctest/doctest.h>
 
 #include <chrono>
