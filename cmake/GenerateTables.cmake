@@ -40,8 +40,8 @@ function(clray_generate_table table macro)
 endfunction()
 
 # Detectors, for the kernels on the host (host/pipeline/host_pass.cpp): the files of those that look at moments of a
-# path; CLRAY_HOOK_<hook>(X); and CLRAY_PROGRAM_NUMBERS(X) with X(name) for every number that a device's program is built
-# with (host/pipeline/specialise.cpp), there read from `numbers`.
+# path; CLRAY_HOOK_<hook>(X); and CLRAY_PROGRAM_NUMBERS(X) with X(name) for every number that a device's program is
+# built with (host/pipeline/specialise.cpp), there read from `numbers`.
 function(clray_generate_detectors)
   clray_rows(detector DETECTOR rows)
   set(includes "")

@@ -24,7 +24,6 @@ struct Device::Impl {
     cl::CommandQueue queue;                       ///< in order, profiling enabled
     bool int64_atomics = false;                   ///< cl_khr_int64_base_atomics, unless a quirk speaks against it
     bool no_optimiser = false;                    ///< build with -cl-opt-disable
-    bool keeps_binaries = false;                  ///< worthwhile on this driver (binary_cache.hpp)
     std::map<std::string, std::string> defines;   ///< capability defines: from extensions and quirks.def
     std::map<std::string, cl::Program> programs;  ///< programs built so far, by build options and source
   };

@@ -9,7 +9,7 @@
 #include <functional>
 #include <mutex>
 
-#include "device/binary_cache.hpp"
+#include "device/kernel_cache.hpp"
 #include "device/self_test.hpp"
 
 namespace clray {
@@ -213,7 +213,6 @@ OpenedDevice open_device(const FoundDevice& found) {
       }
     }
     opened.no_optimiser = opened.defines.erase("CLRAY_HOST_NO_OPTIMISER") > 0;
-    opened.keeps_binaries = opened.defines.erase("CLRAY_HOST_KEEPS_BINARIES") > 0;
     if (!found.info.int64_atomics) opened.defines["CLRAY_NO_INT64_ATOMICS"] = "1";
     opened.int64_atomics = opened.defines.count("CLRAY_NO_INT64_ATOMICS") == 0;
     return opened;

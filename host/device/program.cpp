@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <sstream>
 
-#include "device/binary_cache.hpp"
+#include "device/kernel_cache.hpp"
 
 namespace clray {
 namespace {
@@ -51,18 +51,11 @@ std::string build_flags(const OpenedDevice& opened, bool warnings_are_errors) {
 }
 
 cl::Program build_source(OpenedDevice& opened, const std::string& entry, const std::string& source,
-                         bool warnings_are_errors, bool use_binary, bool* from_binary) {
+                         bool warnings_are_errors) {
   const std::string flags = build_flags(opened, warnings_are_errors);
   const std::string key = flags + "\n" + source;
   const auto built = opened.programs.find(key);
   if (built != opened.programs.end()) return built->second;
-  if (use_binary && opened.keeps_binaries) {
-    if (const auto kept = load_binary(opened, flags, source)) {
-      if (from_binary) *from_binary = true;
-      opened.programs.emplace(key, *kept);
-      return *kept;
-    }
-  }
   return with_cl_errors(opened.info.name, [&] {
     cl::Program program(opened.context, source);
     try {

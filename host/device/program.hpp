@@ -45,10 +45,9 @@ std::string program_source(const OpenedDevice& opened, const std::string& entry,
 /// the first lines of the log.
 cl::Program build_program(OpenedDevice& opened, const std::string& entry, const ProgramOptions& options);
 
-/// Builds a source made by flatten. `use_binary`: takes a kept binary where there is one (binary_cache.hpp); then
-/// `*from_binary` says whether it did.
+/// Builds a source made by flatten, or takes what was built before.
 cl::Program build_source(OpenedDevice& opened, const std::string& entry, const std::string& source,
-                         bool warnings_are_errors, bool use_binary = false, bool* from_binary = nullptr);
+                         bool warnings_are_errors);
 
 /// The options given to the OpenCL compiler.
 std::string build_flags(const OpenedDevice& opened, bool warnings_are_errors);

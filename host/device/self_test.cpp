@@ -8,8 +8,8 @@
 
 #include <cmath>
 
-#include "device/binary_cache.hpp"
 #include "device/buffers.hpp"
+#include "device/kernel_cache.hpp"
 #include "shared/elementary.h"
 #include "shared/philox.h"
 
@@ -117,8 +117,10 @@ void run_self_test(OpenedDevice& opened, const KernelFiles& files) {
   ProgramOptions options;
   options.defines["CLRAY_SELF_TEST_RESULTS"] = std::to_string(kResults) + "u";
   const std::string source = program_source(opened, entry, options, files);
-  bool from_binary = false;
-  const cl::Program program = build_source(opened, entry, source, false, true, &from_binary);
+  const bool embedded = &files == &embedded_kernels();
+  const std::string what = "arithmetic\n" + source;
+  if (embedded && remembered(opened, what)) return;
+  const cl::Program program = build_source(opened, entry, source, false);
   cl::Kernel kernel = make_kernel(opened, program, "self_test");
   const cl::Buffer in_buffer = make_buffer(opened, in);
   const cl::Buffer out_buffer = make_zero_buffer<u64>(opened, kItems * kResults);
@@ -137,7 +139,7 @@ void run_self_test(OpenedDevice& opened, const KernelFiles& files) {
   for (std::size_t i = 0; i < kSums; ++i) {
     if (sums[i] != answers[i]) refuse(opened, "64-bit sum", static_cast<u64>(answers[i]), static_cast<u64>(sums[i]));
   }
-  if (opened.keeps_binaries && !from_binary) save_binary(opened, build_flags(opened, false), source, program);
+  if (embedded) remember(opened, what);
 }
 
 }  // namespace clray

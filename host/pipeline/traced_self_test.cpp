@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "clray/error.hpp"
-#include "device/binary_cache.hpp"
+#include "device/kernel_cache.hpp"
 #include "pipeline/built_in_scene.hpp"
 #include "pipeline/device_pass.hpp"
 #include "pipeline/estimate.hpp"

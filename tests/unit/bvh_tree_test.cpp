@@ -39,7 +39,7 @@ Boxes random_boxes(std::size_t count, double spread, double size, std::uint64_t 
 }
 
 bool is_leaf(std::uint32_t child) {
-  return (child_count(child) != 0;
+  return child_count(child) != 0;
 }
 
 /// What a walk over the whole tree finds wrong with it.

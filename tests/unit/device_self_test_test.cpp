@@ -109,7 +109,7 @@ TEST_CASE("the 32-bit pair gives the sums of the 64-bit atomics") {
 
 TEST_CASE("a warm self-test is quick") {
   OpenedDevice first = opened_cpu();
-  run_self_test(first);  // fills the driver's kernel cache
+  run_self_test(first);  // remembers that it passed
   double best_s = 1e9;
   for (int i = 0; i < 5; ++i) {
     OpenedDevice opened = opened_cpu();
@@ -118,5 +118,5 @@ TEST_CASE("a warm self-test is quick") {
     best_s = std::min(best_s, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   }
   MESSAGE("warm self-test: " << 1000.0 * best_s << " ms");
-  CHECK(best_s < 0.2);  // 30-50 ms on an idle machine; tests run side by side
+  CHECK(best_s < 0.005);
 }

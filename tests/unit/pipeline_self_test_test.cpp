@@ -7,7 +7,7 @@
 #include <chrono>
 #include <filesystem>
 
-#include "device/binary_cache.hpp"
+#include "device/kernel_cache.hpp"
 #include "device/platforms.hpp"
 #include "pipeline/built_in_scene.hpp"
 #include "pipeline/device_pass.hpp"

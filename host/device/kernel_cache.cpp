@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is remembered is a file of its own: two hashes of its key (device, driver, flags, text) and a checksum of them.
+// The name is the first hash.
+#include "device/kernel_cache.hpp"
+
+#include <fmt/format.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "device/program.hpp"
+
+namespace clray {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string key_of(const OpenedDevice& opened, const std::string& what) {
+  const char* library = getenv("POCL_KERNELLIB_NAME");  // changes PoCL's code but not its names
+  const DeviceInfo& info = opened.info;
+  std::string key;
+  for (const std::string& part : {info.platform, info.name, info.version, info.driver,
+                                  std::string(library ? library : ""), build_flags(opened, false), what}) {
+    key += part + "\n";
+  }
+  return key;
+}
+
+constexpr std::uint64_t kFnvBasis = 0xcbf29ce484222325u;
+
+std::uint64_t fnv1a(std::uint64_t state, const std::string& text) {
+  for (const unsigned char c : text) state = (state ^ c) * 0x100000001b3u;
+  return state;
+}
+
+/// Of what passed: the file and its text.
+struct Note {
+  fs::path path;
+  std::string text;
+};
+
+Note note_of(const OpenedDevice& opened, const std::string& what) {
+  const std::string key = key_of(opened, what);
+  const std::uint64_t first = fnv1a(kFnvBasis, key), second = fnv1a(~kFnvBasis, key);
+  const std::string hashes = fmt::format("clray {} passed {:016x} {:016x}\n", CLRAY_VERSION, first, second);
+  return {fs::path(kernel_cache_folder()) / "clray" / fmt::format("{:016x}.passed", first),
+          hashes + fmt::format("{:016x}\n", fnv1a(kFnvBasis, hashes))};
+}
+
+}  // namespace
+
+bool remembered(const OpenedDevice& opened, const std::string& what) {
+  const Note note = note_of(opened, what);
+  std::ifstream file(note.path, std::ios::binary);
+  return std::string((std::istreambuf_iterator<char>(file)), {}) == note.text;
+}
+
+void remember(const OpenedDevice& opened, const std::string& what) {
+  const Note note = note_of(opened, what);
+  std::error_code error;
+  fs::create_directories(note.path.parent_path(), error);
+  if (error) return;
+  std::string temporary = note.path.string() + "-XXXXXX";
+  const int descriptor = mkstemp(temporary.data());
+  if (descriptor < 0) return;
+  close(descriptor);
+  std::ofstream file(temporary, std::ios::binary);
+  file << note.text;
+  file.close();
+  if (file) fs::rename(temporary, note.path, error);  // whole or not at all, whoever else writes it
+  if (!file || error) fs::remove(temporary, error);
+}
+
+std::string kernel_cache_folder() {
+  if (const char* folder = getenv("POCL_CACHE_DIR")) return folder;
+  if (const char* folder = getenv("XDG_CACHE_HOME")) return fs::path(folder) / "pocl" / "kcache";
+  if (const char* folder = getenv("HOME")) return fs::path(folder) / ".cache" / "pocl" / "kcache";
+  return "/tmp/pocl/kcache";
+}
+
+bool kernel_cache_writable() {
+  const fs::path folder = kernel_cache_folder();
+  std::error_code error;
+  fs::create_directories(folder, error);
+  std::string name = (folder / "clray-probe-XXXXXX").string();
+  const int file = mkstemp(name.data());
+  if (file < 0) return false;
+  const bool written = write(file, "clray", 5) == 5;
+  close(file);
+  unlink(name.c_str());
+  return written;
+}
+
+std::string unwritable_cache() {
+  return "the folder of compiled kernels, " + kernel_cache_folder() +
+         ", cannot be written: POCL_CACHE_DIR names another";
+}
+
+}  // namespace clray
