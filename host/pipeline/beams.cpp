@@ -28,14 +28,6 @@ void store(double* out, const vec3& v) {
   out[2] = v.z;
 }
 
-double sine_of_degrees(double degrees) {
-  if (degrees == 0.0 || std::fabs(degrees) == 180.0) return 0.0;
-  if (std::fabs(degrees) == 90.0) return degrees > 0.0 ? 1.0 : -1.0;
-  double s, c;
-  el_sincos(degrees * (CLRAY_PI / 180.0), &s, &c);
-  return s;
-}
-
 void set_frame(const BoxFrame& frame, ClrayView* view) {
   std::copy(frame.centre.begin(), frame.centre.end(), view->box_centre);
   view->box_scale = frame.scale;
@@ -176,13 +168,6 @@ void pixel_rays(const Geometry& geometry, const PictureSize& size, const std::ve
 }
 
 }  // namespace
-
-Vec3 direction_from_degrees(double azimuth_deg, double elevation_deg) {
-  const double azimuth = azimuth_deg > 180.0 ? azimuth_deg - 360.0 : azimuth_deg;
-  const auto cosine = [](double degrees) { return sine_of_degrees(90.0 - std::fabs(degrees)); };
-  const double c = cosine(elevation_deg);
-  return {c * cosine(azimuth), c * sine_of_degrees(azimuth), sine_of_degrees(elevation_deg)};
-}
 
 std::vector<RigidMotion> motions_of(const Scene& scene, const Geometry& geometry, const Orientation& orientation) {
   std::vector<RigidMotion> motions;

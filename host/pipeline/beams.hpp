@@ -16,7 +16,4 @@ std::vector<RigidMotion> motions_of(const Scene& scene, const Geometry& geometry
 /// Path lengths of one bounce over all views.
 PathRange path_range(const Scene& scene, const Geometry& geometry, const PassRequest& request, const Beams& beams);
 
-/// Unit vector at an azimuth (from +x toward +y) and an elevation (from the xy plane), degrees; exact at right angles.
-Vec3 direction_from_degrees(double azimuth_deg, double elevation_deg);
-
 }  // namespace clray

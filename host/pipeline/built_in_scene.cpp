@@ -127,6 +127,7 @@ PassRequest request_of(const ProgramContent& content, const Scene& scene) {
   PassRequest request;
   request.lanes.resize(content.lanes);
   request.pixels = content.pixels;
+  request.mirrors = content.mirrors;
   request.replicates = 2;
   request.picture = {4, 3, 0};
   for (std::size_t d = 0; d < scene.detectors.size(); ++d) request.detectors.push_back(static_cast<int>(d));
@@ -136,6 +137,7 @@ PassRequest request_of(const ProgramContent& content, const Scene& scene) {
     orientation.source = glm::normalize(scene.source.direction + Vec3(0.0, tilt, -tilt));
     for (const Observer& observer : scene.observers)
       orientation.observers.push_back(observer.monostatic ? orientation.source : observer.direction);
+    orientation.ranges_m.resize(scene.observers.size());
     request.orientations.push_back(orientation);
   }
   return request;
@@ -157,6 +159,7 @@ ProgramContent content_of(const PassPlan& plan, bool specialised) {
   content.connections = plan.traits.connections;
   content.components = plan.traits.components;
   content.pixels = plan.request.pixels;
+  content.mirrors = plan.request.mirrors;
   content.scatter = has("CLRAY_SCATTER");
   content.sobol = has("CLRAY_SOBOL");
   content.strata = has("CLRAY_STRATA");

@@ -2,17 +2,15 @@
 // Which passes a scene takes: detectors that can share rays share a pass, and so do lanes (variants and bands).
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
-#include "pipeline/beams.hpp"
+#include "pipeline/illumination.hpp"
 #include "pipeline/plan.hpp"
-#include "scene/motion.hpp"
 #include "scene/tables.hpp"
 
 namespace clray {
 namespace {
 
-constexpr std::size_t kAnyNumber = std::numeric_limits<std::size_t>::max();
+constexpr std::size_t kMostLanes = 64;  // of a pass: more take more registers than they save hits
 
 /// How many lanes of a picture are traced together, so that each hit is found once for all of them. Their sums stay
 /// within a quarter of a GiB on every device, because the digest depends on the number. The rest follow in later
@@ -20,34 +18,13 @@ constexpr std::size_t kAnyNumber = std::numeric_limits<std::size_t>::max();
 std::size_t lanes_together(const DetectorSpec& spec, std::size_t views) {
   const double pixels = detector_value(spec, "width") * detector_value(spec, "height") * static_cast<double>(views);
   const double lanes = 0x1p28 / (pixels * 2.0 * sizeof(std::int64_t));
-  return static_cast<std::size_t>(std::min(64.0, std::max(1.0, lanes)));
-}
-
-/// Directions of the Sun on a grid, body frame: elevations (from the xy plane) from -90 to 90 degrees inclusive,
-/// azimuths (from +x toward +y) from 0 to 360 exclusive, one at the poles. Observers stay where the motion starts; an
-/// observer at the source moves with it.
-std::vector<Orientation> sun_grid(const Scene& scene, int azimuths, int elevations) {
-  const Orientation start = orientations(scene).front();
-  std::vector<Orientation> grid;
-  for (int e = 0; e < elevations; ++e) {
-    const double elevation = -90.0 + 180.0 * e / (elevations - 1);
-    const bool pole = e == 0 || e == elevations - 1;
-    for (int a = 0; a < (pole ? 1 : azimuths); ++a) {
-      Orientation orientation = start;
-      orientation.source = direction_from_degrees(360.0 * a / azimuths, elevation);
-      for (std::size_t o = 0; o < scene.observers.size(); ++o) {
-        if (at_source(scene.observers[o], scene.source)) orientation.observers[o] = orientation.source;
-      }
-      grid.push_back(orientation);
-    }
-  }
-  return grid;
+  return static_cast<std::size_t>(std::min(static_cast<double>(kMostLanes), std::max(1.0, lanes)));
 }
 
 /// The requests of a scene, detector by detector.
 class Requests {
  public:
-  explicit Requests(const Scene& scene) : scene_(scene), instants_(orientations(scene)) {}
+  explicit Requests(const Scene& scene) : scene_(scene), instants_(views_of_motion(scene)) {}
 
   std::vector<PassRequest> all() {
     for (std::size_t d = 0; d < scene_.detectors.size(); ++d) {
@@ -90,7 +67,7 @@ class Requests {
     }
     parts.apart = !r.detectors.empty();
     for (const PassRequest& each : {r, parts}) {
-      if (!each.detectors.empty()) add(each, kAnyNumber);
+      if (!each.detectors.empty()) add(each, kMostLanes);
     }
   }
 
@@ -100,11 +77,11 @@ class Requests {
     r.detectors = {static_cast<int>(d)};
     r.observers = {0};
     r.grid = r.apart = true;
-    r.orientations = sun_grid(scene_, static_cast<int>(detector_value(spec, "azimuth_steps")),
-                              static_cast<int>(detector_value(spec, "elevation_steps")));
+    r.orientations = views_of_grid(scene_, static_cast<int>(detector_value(spec, "azimuth_steps")),
+                                   static_cast<int>(detector_value(spec, "elevation_steps")));
     r.first_orientation = next_orientation_;
     next_orientation_ += r.orientations.size();
-    add(r, kAnyNumber);
+    add(r, kMostLanes);
   }
 
   void picture(std::size_t d) {

@@ -111,6 +111,9 @@ TEST_CASE("programs of every kind pass") {
   contents[1].scatter = true;
   contents.push_back(simple("box", "mirror", "rgb"));
   contents.back().pixels = contents.back().scatter = contents.back().shared_planes = true;
+  contents.push_back(contents.back());
+  contents.back().pixels = false;
+  contents.back().mirrors = true;
   contents.push_back(everything());
   contents.back().detectors = {"delay", "pressure", "delay"};
   contents.back().specialised = false;

@@ -7,6 +7,7 @@
 
 #include "pipeline/beams.hpp"
 #include "pipeline/geometry.hpp"
+#include "pipeline/illumination.hpp"
 #include "pipeline/plan.hpp"
 #include "unit/pipeline_support.hpp"
 
@@ -147,4 +148,26 @@ TEST_CASE("Sun directions: poles once, every other elevation all around, exact a
     CHECK(std::fabs(static_cast<double>(v.y - std::sin(r))) < 4 * kEps);
     CHECK(v.z == 0.0);
   }
+}
+
+TEST_CASE("views know the range of each observer at their time, and 0 where nothing says it") {
+  Scene scene = empty_scene();
+  add_shape(scene, "box", {});
+  scene.observers = {Observer{}, Observer{}, Observer{}};
+  scene.observers[1].monostatic = scene.observers[2].monostatic = false;
+  scene.observers[1].direction = scene.observers[2].direction = {1, 0, 0};
+  scene.observers[2].range_m = 5e5;
+  scene.motion = Motion{};
+  scene.motion->period_s = 8.0;
+  scene.motion->step_rad = 3.14159265358979323846;
+  scene.motion->stop_s = 8.0;
+  CHECK(views_of_motion(scene)[0].ranges_m == std::vector<double>{0.0, 0.0, 5e5});
+  scene.station = Station{};
+  scene.station->ranges = {{0.0, 1e6}, {4.0, 3e6}};
+  const std::vector<Orientation> views = views_of_motion(scene);
+  REQUIRE(views.size() == 3);
+  CHECK(views[0].ranges_m == std::vector<double>{1e6, 1e6, 5e5});
+  CHECK(views[1].ranges_m == std::vector<double>{3e6, 3e6, 5e5});
+  CHECK(views[2].ranges_m == std::vector<double>{0.0, 0.0, 5e5});  // beyond the table
+  CHECK(views_of_grid(scene, 4, 3)[1].ranges_m == views[0].ranges_m);
 }

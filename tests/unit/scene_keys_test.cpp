@@ -220,7 +220,7 @@ TEST_CASE("keys: malformed rows are bugs of clray") {
         bug + "range '[0,4]' does not fit the member's type");
   CHECK(bug_of({"toy", "lag_s", "lag_ns", "a|b", "ns", "", "lag"}, 0.0) == bug + "words need an enum or a bool");
   CHECK(bug_of({"toy", "lag_s", "lag_ns", "vector", "", "", "lag"}, std::string()) ==
-        bug + "a text can only be a name");
+        bug + "a text is a name, or the row of a table");
   CHECK(bug_of({"toy", "lag_s", "lag_ns", "[0,1]", "", "", "lag"}, Vec3()) == bug + "expected direction or vector");
 }
 

@@ -2,9 +2,7 @@
 // The one-pixel spectrometer on the host: A of each band, what is received at the observer's range, and its magnitude.
 #include <cmath>
 #include <limits>
-#include <optional>
 
-#include "ephemeris/range.hpp"
 #include "pipeline/detector/intensity.hpp"
 #include "pipeline/detector/room.hpp"
 #include "pipeline/detector/rooms.hpp"
@@ -23,18 +21,16 @@ double magnitude_of(double W_m2, const Band& band) {
   return zero > 0.0 && W_m2 > 0.0 ? -2.5 * el_log(W_m2 / zero) / el_log(10.0) : kNan;
 }
 
-void spectrometer_record(const RoomResults& x, const ephemeris::RangeModel* ranges, std::size_t v, std::size_t l,
-                         std::size_t c) {
+void spectrometer_record(const RoomResults& x, std::size_t v, std::size_t l, std::size_t c) {
   const auto observer = static_cast<std::size_t>(x.plan.request.observers[c]);
   const Orientation& instant = x.plan.request.orientations[v];
   SpectrometerResult s;
   s.key = x.key(v, l, c);
   s.band = x.band(l);
   s.intensity_m2_per_sr = estimate_mean(intensities(x.plan, x.read, v, l, c));
-  s.source_W_m2 = source_band_W_m2(x.scene.source, s.band);
+  s.source_W_m2 = source_band_W_m2(x.scene.source, s.band) * instant.light;
   s.magnitude_AB = s.magnitude_standard_error = kNan;
-  const ephemeris::Instant time = ephemeris::instant_of(instant.time_s);
-  if (const double range = ephemeris::observer_range_m(x.scene.observers[observer], ranges, time); range > 0.0) {
+  if (const double range = instant.ranges_m[observer]; range > 0.0) {
     const double factor = s.source_W_m2 / (range * range);
     s.received_W_m2 = factor * s.intensity_m2_per_sr.value;
     s.received_W_m2_standard_error = factor * s.intensity_m2_per_sr.standard_error;
@@ -50,11 +46,9 @@ void spectrometer_record(const RoomResults& x, const ephemeris::RangeModel* rang
 
 void spectrometer_results(const RoomResults& x) {
   const SumShape& shape = x.plan.layout.shape;
-  std::optional<ephemeris::RangeModel> ranges;
-  if (x.scene.station) ranges.emplace(*x.scene.station);
   for (std::size_t v = 0; v < shape.views; ++v) {
     for (std::size_t l = 0; l < shape.lanes; ++l) {
-      for (std::size_t c = 0; c < shape.connections; ++c) spectrometer_record(x, ranges ? &*ranges : nullptr, v, l, c);
+      for (std::size_t c = 0; c < shape.connections; ++c) spectrometer_record(x, v, l, c);
     }
   }
 }
