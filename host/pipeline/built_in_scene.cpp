@@ -155,6 +155,10 @@ ProgramContent content_of(const PassPlan& plan, bool specialised) {
     const TableRow& row = table("detector")[static_cast<std::size_t>(d.row)];
     if (d.asked && !row.inner) content.detectors.push_back(row.name);
   }
+  // A pass of mirrors is for a picture, whose own detectors look from pixels.
+  for (const TableRow& row : table("detector")) {
+    if (plan.request.mirrors && content.detectors.empty() && row.pixel && !row.inner) content.detectors = {row.name};
+  }
   content.lanes = static_cast<std::uint32_t>(plan.request.lanes.size());
   content.connections = plan.traits.connections;
   content.components = plan.traits.components;
