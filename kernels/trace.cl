@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The entry point of every pass: reads as the pipeline. A work-item carries a few consecutive points of one replicate
 // of one view (and pixel) through the stages, bounce by bounce, and adds its sums at the end.
-// clang-format off: the order of the includes is the order of the layers
 #include "shared/portable.h"
 #include "shared/abi.h"
 #include "shared/elementary.h"
@@ -23,10 +22,10 @@
 #include "stage/shade.cl"
 #include "stage/scatter.cl"
 #include "stage/path.cl"
-// clang-format on
 
-/// Items first_item … first_item + items - 1 of the block of points first_point … first_point + points - 1 of every
-/// replicate; an item is (view, pixel, replicate, part: every so many-th point, `chunk` in all), part running fastest.
+/// Runs the work-items first_item … first_item + items - 1 of a block of points, first_point … first_point + points - 1
+/// of every replicate. The number of an item stands for its view, pixel, replicate and part; the part runs fastest.
+/// With n parts, part k is every n-th point of the block from the k-th on, at most `chunk` points.
 #define CLRAY_ARGUMENT(type, name) type *name,
 #define CLRAY_VALUE(type, name) name,
 __kernel void clray_trace(CLRAY_BUFFERS(CLRAY_ARGUMENT) u64 first_item, u32 items, u32 first_point, u32 points,
@@ -36,8 +35,9 @@ __kernel void clray_trace(CLRAY_BUFFERS(CLRAY_ARGUMENT) u64 first_item, u32 item
   const u32 chunks = (points + chunk - 1u) / max(chunk, 1u);
   u64 item = first_item + get_global_id(0);
   u32 part = (u32)(item % max(chunks, 1u));
-  // Points whose indices differ in their high bits alone are neighbours in Sobol's first dimension, and so are those of
-  // items whose parts differ in their low bits: a work-item, and those beside it, meet the same strip of the beam.
+  // Points whose indices differ only in their high bits are neighbours in Sobol's first dimension. With its bits
+  // reversed, the part gives such points to one work-item and to those beside it, so all of them meet the same strip of
+  // the beam.
   if ((chunks & (chunks - 1u)) == 0u) part = chunks > 1u ? reverse_bits(part) >> (clz(chunks) + 1u) : 0u;
   item /= max(chunks, 1u);
   Tally tally;

@@ -20,7 +20,7 @@ static i64 to_fixed(f64 value, f64 scale, f64 limit, i64* wide, volatile __globa
   const f64 scaled = value * (scale * CLRAY_TWO_TO_MINUS_32);
   if (CLRAY_WIDE && fabs(scaled) <= CLRAY_WIDE_LIMIT) {
     *wide = convert_long_rte(scaled);
-    // What the coarser scale rounds away, exactly: nothing is lost to it.
+    // What the coarser scale rounds away, exactly, so that nothing is lost.
     return convert_long_rte(fma(-(f64)*wide, CLRAY_TWO_TO_32, value * scale));
   }
   count_event(counters, size - size == 0.0 ? CLRAY_COUNT_OVERFLOW : CLRAY_COUNT_NON_FINITE);

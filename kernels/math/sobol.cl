@@ -19,8 +19,8 @@ typedef struct Sampler {
   u32 stream;  // 0 for a beam, 1 + pixel for pixels
   u32 index;
   u32 words[4];  // of group 0, which all points of a Sobol stream share
-  u32 origin;    // a point
-  u32 base[2];   // and its dimensions 0 and 1, unscrambled, bits reversed
+  u32 origin;    // the index of a point
+  u32 base[2];   // dimensions 0 and 1 of that point, unscrambled, bits reversed
 } Sampler;
 
 /// Four seeds (or random words) of dimensions 4·group-2 … 4·group+1.
@@ -76,14 +76,14 @@ static void sampler_draw(const Sampler* s, const __global u32* directions, u32 g
   for (u32 k = 0; k < count; ++k) out[k] = unit_from_bits(words[skip + k]);
 }
 
-/// Before a sampler's first point, `origin`. Points whose indices differ from it in few bits cost least.
+/// Prepares a sampler for points near `origin`: those whose indices differ from it in few bits cost least.
 static void sampler_begin(Sampler* s, const __global u32* directions, u32 origin) {
   s->index = s->origin = origin;
   sampler_words(s, 0u, 0xffffffffu, s->words);
   for (u32 k = 0; CLRAY_SOBOL && k < 2u; ++k) s->base[k] = sobol_reversed(directions, k, origin);
 }
 
-/// Dimensions 0 and 1 of the current point: as sampler_draw, with what it shares with the origin kept.
+/// Dimensions 0 and 1 of the current point, as sampler_draw gives them, from what it shares with the origin.
 static void sampler_draw_first(Sampler* s, const __global u32* directions, f64* out) {
   if (!CLRAY_SOBOL) {
     sampler_draw(s, directions, 0u, 2u, 2u, out);

@@ -7,8 +7,8 @@
 
 #include "shared/abi.h"
 
-/// The stratum, of `count` from `first` on, that u in (0,1) falls in; *place: where in it, in (0,1); *size: its width,
-/// 1 … 2^32.
+/// Finds the stratum that u in (0,1) falls in, among `count` from `first` on. *place: where in it, in (0,1); *size: its
+/// width, 1 … 2^32.
 static u32 strata_choose(const __global ClrayStratum* strata, u32 first, u32 count, f64 u, f64* place, f64* size) {
   const __global ClrayStratum* s = strata + first;
   const f64 x = u * CLRAY_TWO_TO_32;
@@ -20,7 +20,8 @@ static u32 strata_choose(const __global ClrayStratum* strata, u32 first, u32 cou
   return first + k;
 }
 
-/// The point of the unit square, x + r·y <= s for a share q of it, at `along` of the line x + r·y = s.
+/// A point of the unit square on the line x + r·y = s that has the share q of the square on its lower side. `along` in
+/// (0,1) says where on the line.
 static void strata_square(f64 q, f64 along, f64 r, f64* x, f64* y) {
   const f64 rest = 1.0 - q, corner = 0.5 * r;
   f64 s = q + corner;
@@ -35,7 +36,7 @@ static void strata_square(f64 q, f64 along, f64 r, f64* x, f64* y) {
   *x = f64_min(f64_max(fma(-r, *y, s), 0.0), 1.0);
 }
 
-/// Carries u to where its stratum lies in the beam's rectangle; returns the ray's share of the beam.
+/// Moves u to where its stratum lies in the beam's rectangle. Returns the ray's share of the beam.
 static f64 strata_place(const __global ClrayStratum* strata, const __global ClrayView* view, f64 u[2]) {
   f64 across, along, strip_size, piece_size;
   const u32 strip = strata_choose(strata, view->first_stratum, view->strips, u[0], &across, &strip_size);

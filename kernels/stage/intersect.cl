@@ -51,7 +51,8 @@ CLRAY_FN u32 two_sided(const Buffers* g, u32 material) {
   return !CLRAY_ONE_SIDED || (g->materials[material].flags & CLRAY_MATERIAL_TWO_SIDED) != 0u;
 }
 
-/// Puts a hit of a face that shares its plane where the ray meets that plane. Returns 0 where the ray leaves the plane.
+/// Moves a hit of a face that shares its plane to where the ray meets the plane. Returns 0 if the ray leaves that
+/// plane.
 CLRAY_FN i32 meet_plane(const Buffers* g, const LocalRay* ray, const __global ClrayPrimitive* primitive, u32 part,
                         f64* t, u32* plane, u32* rank) {
   const __global f64* p = g->shapes + primitive->planes + CLRAY_PLANE_SIZE * part;
@@ -66,7 +67,7 @@ CLRAY_FN i32 meet_plane(const Buffers* g, const LocalRay* ray, const __global Cl
   return *t > 0.0;
 }
 
-/// Tests one primitive; a nearer hit, or one as near that goes first, replaces *hit.
+/// Tests one primitive. A nearer hit replaces *hit, and so does one at equal distance that has precedence.
 static void test_primitive(const Buffers* g, const LocalRay* ray, u32 index, u32 instance, Hit* hit) {
   const __global ClrayPrimitive* primitive = g->primitives + index;
   const __global f64* data = g->shapes + primitive->data;
@@ -74,7 +75,7 @@ static void test_primitive(const Buffers* g, const LocalRay* ray, u32 index, u32
   u32 part = 0u, plane = 0u, rank = 0u;
   vec3 weights = v3(0.0, 0.0, 0.0);
   i32 found;
-  // Its own t is rounded otherwise than that of the plane, which decides.
+  // The t of the plane decides; that of the face may be rounded otherwise.
   if (CLRAY_PLANES && primitive->planes != CLRAY_NO_PLANES) t_max = INFINITY;
 #if CLRAY_ANALYTIC
 #if CLRAY_TRIANGLES

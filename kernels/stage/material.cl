@@ -7,7 +7,7 @@ CLRAY_FN const __global ClrayMaterial* lane_material(const Buffers* g, u32 lane,
   return g->materials + lane * g->pass->materials + material;
 }
 
-/// Directional reflectance from the material's table: linear between nodes that the host set as close as it takes.
+/// Directional reflectance from the material's table, linear between its nodes (docs/physics.md, section 2).
 CLRAY_FN f64 lane_reflectance(const Buffers* g, const __global ClrayMaterial* m, f64 mu) {
   const __global f64* nodes = g->tables + m->reflectance + 1;
   const u32 count = (u32)nodes[-1];

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // One path from its start to its end: generate, then at each surface intersect, shade, scatter, roulette, with the
-// scene's detectors looking on (stage/record.cl). What the scene does not need is empty.
+// scene's detectors looking on (stage/record.cl). Stages and hooks that the scene does not need are empty.
 #ifndef CLRAY_PATH_CL
 #define CLRAY_PATH_CL
 
-/// Length of the path's last piece: from the plane across the beam through the reference point, or from a surface.
+/// Length of the path's last segment. The first one begins at the plane across the beam through the reference point.
 static f64 piece_length(const Buffers* g, const Tally* tally, u32 bounce, vec3 from, vec3 to) {
   if (bounce > 0u) return v3_length(v3_sub(to, from));
   return -v3_dot(v3_load(g->views[tally->view].toward), v3_sub(to, v3_load(g->pass->reference)));

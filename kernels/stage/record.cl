@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stage 6, record: every detector of the scene looks at a moment of the path and adds to its sums, as integers. A
-// detector is one file, detector/<id>.cl, with a function for each hook that its row in detector.def names; this file
-// gives them what they add with, and calls them. Hooks that no detector of the scene has call nothing.
+// Stage 6, record: each detector of the scene looks at moments of the path and adds to its sums, as integers. A
+// detector is one file, detector/<id>.cl, with a function for each hook that its row in detector.def names. This file
+// calls these functions and has what they add with. A hook that no detector of the scene has calls nothing.
 //   hit      (g, tally, n, bounce, surface, path)        light that a path carries meets a surface
 //   connect  (g, tally, n, c, weights, length, point)    light toward connection c from a point, on a path of `length`
 //                                                        (m, relative to the reference point)
@@ -34,7 +34,7 @@ static u32 sum_width(const Buffers* g, u32 detector, u32 sum) {
   return g->blocks[g->detectors[detector].first_block + sum].width;
 }
 
-/// Adds to a number that the item keeps; what is too large for it goes straight to the second accumulator at `at`.
+/// Adds to a number that the item keeps. What is too large for that goes at once to the second accumulator at `at`.
 static void keep(const Buffers* g, i64* own, u64 at, f64 value, f64 scale, f64 limit) {
   i64 wide;
   *own += to_fixed(value, scale, limit, &wide, g->counters);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Stages 4 and 5, scatter and roulette: where the path goes on from a surface, what it then carries, and whether it is
-// worth following. Both are empty where no path is followed beyond its first surface.
+// followed. Both are empty if no path of the scene is followed beyond its first surface.
 #ifndef CLRAY_SCATTER_CL
 #define CLRAY_SCATTER_CL
 
@@ -22,9 +22,9 @@ CLRAY_FN void scatter_lanes(const Buffers* g, const Surface* surface, vec3 wo, f
   path->density = light_scaled(&path->density, CLRAY_TWO_TO_MINUS_32);
 }
 
-/// A direction for the path, and its throughput after the reflection; 0 when all that is left is absorbed. The lane
-/// that samples is chosen by the first bounce's lobe coordinate, whose rest then chooses the lobe: an even choice that
-/// stays stratified.
+/// Draws a direction for the path and gives it the throughput after the reflection. Returns 0 if all of it is absorbed.
+/// The lobe coordinate of the first bounce chooses the lane that samples, and what is left of it chooses the lobe, so
+/// that the choice is even and stays stratified.
 CLRAY_FN u32 scatter(const Buffers* g, f64 u[4], u32 bounce, const Surface* surface, Path* path, Ray* ray) {
   if (CLRAY_LANES > 1 && bounce == 0u) {
     const f64 x = u[0] * (f64)CLRAY_LANES;
@@ -68,10 +68,9 @@ static Scattering stage_scatter(const Buffers* g, const Sampler* sampler, u32 bo
   return s;
 }
 
-/// The stage: Russian roulette, from the third bounce on, on the largest part of its share that the path still carries.
-/// It survives with probability q and is raised by 1/q, so the mean stays. The share itself has no say: a path that
-/// stands for little of the beam is as likely to go on as any. Returns whether the path lives; a dead one carries
-/// nothing.
+/// The stage: Russian roulette, from the third bounce on. The path survives with probability q and is raised by 1/q, so
+/// the mean stays. q is what the path still carries (its largest lane) over its share of the beam, so that a path with
+/// a small share is as likely to go on as any. Returns whether the path lives; a dead path carries nothing.
 static i32 stage_roulette(u32 bounce, Path* path, Scattering* s) {
   if (!CLRAY_SCATTER) return 0;
   const f64 left = light_largest(&path->throughput) / path->share;

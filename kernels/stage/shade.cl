@@ -41,8 +41,8 @@ static void stage_shade(const Buffers* g, Tally* tally, u32 bounce, const Surfac
   }
 }
 
-/// Light that leaves the body from a mirror: a connection receives it through its cone. Returns whether no connection
-/// has one.
+/// Light that leaves the body from a mirror: a connection receives it through its cone. Returns 1 if no connection has
+/// a cone.
 static u32 shade_mirror(const Buffers* g, Tally* tally, const Path* path, const Ray* ray, const Surface* last) {
   if (!(CLRAY_CONNECT && CLRAY_DELTA && path->delta)) return 0u;
   u32 blind = 1u;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the stages hand to each other, and the buffers they read and write. Options (host/pipeline/specialise.cpp) are
-// CLRAY_* macros; each is 0 or absent for what the scene does not need.
+// What the stages pass to each other, and the buffers that they read and write. Options are CLRAY_* macros, made by
+// host/pipeline/specialise.cpp; an option that the scene does not need is 0 or absent.
 #ifndef CLRAY_STATE_CL
 #define CLRAY_STATE_CL
 
@@ -73,7 +73,7 @@ typedef struct Scattering {
 #define CLRAY_KEPT_ROOM CLRAY_KEPT
 #endif
 
-/// Where a work-item adds: its view, replicate and pixel (1 + its number; 0: a beam), and the sums that it keeps.
+/// Where a work-item adds: its view, its replicate, its pixel (stream = 1 + pixel; 0: a beam), and the sums it keeps.
 typedef struct Tally {
   u32 view, replicate, stream;
   u32 started, escaped, killed, capped;
