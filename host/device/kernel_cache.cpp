@@ -71,7 +71,7 @@ void remember(const OpenedDevice& opened, const std::string& what) {
   std::ofstream file(temporary, std::ios::binary);
   file << note.text;
   file.close();
-  if (file) fs::rename(temporary, note.path, error);  // whole or not at all, whoever else writes it
+  if (file) fs::rename(temporary, note.path, error);  // so it appears whole, even if others write it as well
   if (!file || error) fs::remove(temporary, error);
 }
 

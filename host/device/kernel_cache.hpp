@@ -10,7 +10,7 @@ namespace clray {
 
 /// Whether `what` (a self-test's name and program, say) was remembered for that device and driver.
 bool remembered(const OpenedDevice& opened, const std::string& what);
-/// Remembers it. A failure to write is no error: it is forgotten.
+/// Remembers it. If it cannot be written it is forgotten, which is no error.
 void remember(const OpenedDevice& opened, const std::string& what);
 
 /// What to tell about a folder of compiled kernels that cannot be written.

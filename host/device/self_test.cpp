@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The start-up self-test. Where an answer can be written down it is (contraction, rounding, Philox's published
-// answers, carries); the rest is computed by the host, which is built without contraction and rounds + - * / sqrt
-// and fma as IEEE 754 says.
+// The start-up self-test. Some answers are written down: contraction, rounding, Philox's published answers, carries.
+// The host computes the rest; it is built without contraction and rounds + - * / sqrt and fma as IEEE 754 says.
 #include "device/self_test.hpp"
 
 #include <fmt/format.h>
@@ -81,7 +80,7 @@ std::vector<u64> expected_results(const std::vector<f64>& in) {
   return expected;
 }
 
-/// Refuses a host that itself does not compute as expected (built with contraction, say).
+/// Refuses a host that does not compute as expected itself, for example one built with contraction.
 void check_host(const std::vector<u64>& expected) {
   const u32 counter[4] = {0x243f6a88u, 0x85a308d3u, 0x13198a2eu, 0x03707344u};
   u32 r[4];

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kFewest = 18;  // shapes in all: the BVH then has several levels
 
-/// Where the k-th thing goes: a spiral, so that no two stand alike.
+/// The place of the k-th component, on a spiral, so that no two places are alike.
 Vec3 place(std::size_t k) {
   const double turn = 2.4 * static_cast<double>(k), out = 0.25 * std::sqrt(static_cast<double>(k));
   return {out * std::cos(turn), out * std::sin(turn), 0.3 * std::sin(1.7 * static_cast<double>(k))};
@@ -53,8 +53,8 @@ std::shared_ptr<const BrdfTable> small_table() {
   return table;
 }
 
-/// Lanes that differ: the first number of every surface falls from its value in the first lane to half of it beyond the
-/// last, where its key takes that.
+/// Makes lanes differ: the first number of each surface falls from lane to lane, toward half its value beyond the last
+/// lane, if its key allows that.
 void part_lanes(std::uint32_t lanes, Surfaces* surfaces) {
   for (std::uint32_t l = 1; l < lanes; ++l) {
     for (std::uint32_t m = 0; m < surfaces->columns; ++m) {
@@ -103,7 +103,7 @@ std::vector<Component> components_of(const ProgramContent& content, std::size_t 
     if (k == 0 && content.hinged) c.hinge = Hinge{{0, 0.6, 0.8}, {0.1, 0, 0}, 0.4, Hinge::Follow::none};
     components.push_back(c);
     if (!content.shared_planes || !row.flat || k + content.shapes.size() < all) continue;
-    c.name += "b";  // in one place with it
+    c.name += "b";  // at the same place
     c.materials = {static_cast<std::uint32_t>((k + 1) % materials)};
     components.push_back(c);
   }
@@ -122,7 +122,7 @@ void add_light(const ProgramContent& content, Scene* scene) {
   }
 }
 
-/// What a request of this content asks for.
+/// A request for this content.
 PassRequest request_of(const ProgramContent& content, const Scene& scene) {
   PassRequest request;
   request.lanes.resize(content.lanes);
@@ -200,7 +200,7 @@ BuiltInScene built_in_scene(const ProgramContent& content) {
   scene.components.resize(content.components, scene.components.back());
   built.plan = plan_pass(scene, built.geometry, request_of(content, scene), nullptr);
   part_lanes(content.lanes, &built.plan.surfaces);
-  // Any table of directional reflectance will do; true ones would take most of the test's time.
+  // Any table of directional reflectance will do, and true ones would take most of the test's time.
   for (ClrayMaterial& material : built.plan.surfaces.materials)
     material.reflectance = static_cast<std::uint32_t>(built.plan.surfaces.tables.size());
   for (const double number : {3.0, 0.0, 0.3, 1.0, 0.9, 0.7, 0.6}) built.plan.surfaces.tables.push_back(number);

@@ -18,7 +18,7 @@ cl::Buffer filled(OpenedDevice& opened, const Numbers<T>& numbers) {
                                                        : make_zero_buffer<T>(opened, numbers.count);
 }
 
-/// Adds a buffer of the device, times `unit`, in blocks: memory of that size is reused, not mapped anew.
+/// Adds a buffer of the device, times `unit`. It goes in blocks, so that memory is reused and not mapped anew.
 void add_to(std::vector<Sum>* values, OpenedDevice& opened, const cl::Buffer& buffer, std::int64_t unit) {
   constexpr std::size_t kBlock = 1u << 18;
   for (std::size_t first = 0; first < values->size(); first += kBlock) {

@@ -192,7 +192,7 @@ class Packer {
     raw_ = std::move(sorted);
   }
 
-  // By content, so that neither names nor places in a file matter.
+  // Compared by content, so that neither names nor places in a file matter.
   std::vector<std::uint32_t> rank_materials() const {
     std::vector<std::uint32_t> order(scene_.materials.size()), rank(scene_.materials.size());
     std::iota(order.begin(), order.end(), 0u);

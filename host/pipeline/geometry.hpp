@@ -44,13 +44,14 @@ struct Geometry {
   std::uint32_t stack_needed = 1;  ///< of the deepest tree
   bool single = false;             ///< one component, and no faces in one place
   bool shared_planes = false;      ///< faces overlap in one plane
-  std::uint64_t conflicts = 0;     ///< pairs of them that look the same way with different materials
+  std::uint64_t conflicts = 0;     ///< pairs of such faces that look the same way with different materials
   MeshReport report;
   Point centre{{0, 0, 0}};  ///< of the bounding sphere over all hinge angles
   double radius = 0.0;
   double extent = 0.0;  ///< longest side of the box around it, over all hinge angles
 
-  /// Whether nothing outside can be hidden by the body itself. Asked where it matters only: for a mesh this takes time.
+  /// Whether the body is convex, so that it hides no part of itself. It takes time for a mesh, so ask only if it
+  /// matters.
   bool convex() const;
 };
 

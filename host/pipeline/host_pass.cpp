@@ -12,7 +12,7 @@
 #include "shared/elementary.h"
 #include "shared/philox.h"
 
-// The kernels leave unused what a scene does not need.
+// Some functions of the kernels stay unused.
 #pragma GCC diagnostic ignored "-Wunused-function"
 #pragma GCC diagnostic ignored "-Wunused-parameter"
 #pragma GCC diagnostic ignored "-Wmissing-field-initializers"
@@ -28,7 +28,7 @@
 namespace clray {
 namespace {
 
-/// What a device's program has as macros.
+/// The numbers that are macros in a device's program.
 struct ProgramNumbers {
 #define CLRAY_NUMBER(name) u32 name##_ = 0;
   CLRAY_PROGRAM_NUMBERS(CLRAY_NUMBER)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The kernels of a pass compiled as C++, for one plan after another: slow, in order, and with a walk that looks at no
-// box. What a device answers is held against it (traced_self_test.hpp).
+// The kernels of a pass, compiled as C++ for any plan. They run in order, slowly, with a walk that looks at no box. A
+// device's sums are compared with theirs (traced_self_test.hpp).
 #pragma once
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The views of a scene: times, how the body stands, where light comes from and how strong it is, who looks from where
-// and how far away. A motion, a grid of light directions (and, one day, a pass) are ways to make views; below them a
-// view is a view.
+// and how far away. A motion makes views, and so does a grid of light directions. What follows does not ask where a
+// view came from.
 #pragma once
 
 #include <vector>

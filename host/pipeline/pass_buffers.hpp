@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The numbers of a plan as the kernels take them: one member for each row of shared/buffers.h. Whoever runs a pass, a
-// device or the host, takes them from here.
+// The numbers of a plan as the kernels take them: one member for each row of shared/buffers.h. A device and the host's
+// own pass both take them from here.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@
 
 namespace clray {
 
-/// `count` numbers from `data` on, which belong to somebody else; null: that many zeros, which a pass adds to.
+/// `count` numbers from `data` on, owned by others. Null stands for as many zeros, to which a pass adds.
 template <class T>
 struct Numbers {
   const T* data = nullptr;

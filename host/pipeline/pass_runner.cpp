@@ -49,7 +49,7 @@ bool PassRunner::run(Sums* sums, std::uint64_t points, std::uint32_t epoch,
   while ((block & (block - 1)) != 0) block &= block - 1;     // a power of two keeps neighbouring points together
   if (options_.slice_points != 0) block = std::min(block, options_.slice_points);
   std::uint64_t at = begin, undrained = 0;
-  Sums before;  // a copy only where sums must be drained before the end: pictures' are large
+  Sums before;  // copied only if sums must be drained before the end, since those of pictures are large
   while (at < points) {
     const std::uint64_t count = std::min(points - at, block);
     const double done = static_cast<double>(at - begin), all = static_cast<double>(points - begin);

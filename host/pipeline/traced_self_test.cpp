@@ -53,7 +53,7 @@ std::uint64_t digest_with_events(const PassPlan& plan, const Sums& sums) {
   throw Error(ErrorCode::device, "refused: the self-test traced a small scene wrongly: " + what, opened.info.name);
 }
 
-/// The sizes that both programs are built with: the built-in scene runs with the buffers of the one and the code of the
+/// The sizes that both programs are built with, since the built-in scene has the buffers of one and the code of the
 /// other.
 void check_sizes(const ProgramOptions& own, const ProgramOptions& other) {
   for (const auto& [name, value] : own.defines) {

@@ -8,10 +8,10 @@
 
 namespace clray {
 
-/// Traces a small built-in scene (built_in_scene.hpp) with the very program of `plan` and holds every sum against the
-/// host's kernels (host_pass.hpp), whose own answers to a few such scenes are known. Once per device, driver and
-/// program: what passed is remembered beside the kernel cache, with a checksum. Throws Error(device) that says
-/// "refused: …". `files` differ from the embedded ones in tests alone; they are never remembered.
+/// Traces a small built-in scene (built_in_scene.hpp) with the program of `plan`, and compares every sum with that of
+/// the host's kernels (host_pass.hpp). Their own answers to a few such scenes are known. It runs once per device,
+/// driver and program; what passed is remembered beside the kernel cache, with a checksum. Throws Error(device) that
+/// says "refused: …". `files` differ from the embedded ones in tests alone; they are never remembered.
 void run_traced_self_test(OpenedDevice& opened, const PassPlan& plan, bool specialised,
                           const KernelFiles& files = embedded_kernels());
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // caustics: what pixels receive of the light that meets a mirror first. A picture's own paths start at its pixels and
-// connect each surface to the source, which they cannot do through a mirror. Here paths start at the light; those that
-// a mirror does not send on are not followed (stage/scatter.cl), and what a surface then sends toward the picture's
-// observer is added to the pixel that the surface is seen in. Together both are all light but that which leaves from a
-// mirror: of it there are the powers `unseen`, in units of the share of the beam.
+// connect each surface to the source, which they cannot do through a mirror. Here paths start at the light. Only those
+// that meet a mirror first are followed (stage/scatter.cl). What a later surface sends toward the picture's observer is
+// added to the pixel in which that surface is seen. Both sets of paths together have all light except that which leaves
+// from a mirror. Its powers are `unseen`, in units of the share of the beam.
 // Settings, for each view: the picture's axes right and up (3, 3), their coordinates at its left and top edges (m, from
 // the body's origin), and pixels per m.
 #ifndef CLRAY_DETECTOR_CAUSTICS_CL
