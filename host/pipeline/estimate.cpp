@@ -85,6 +85,25 @@ Estimate estimate_mean(const std::vector<double>& replicates) {
   return e;
 }
 
+double error_of_agreement(std::uint64_t replicates) {
+  return poisson_upper95(0) / (static_cast<double>(replicates) * student_t95(static_cast<int>(replicates) - 1));
+}
+
+bool agree(double value, double standard_error) {
+  constexpr double kRounding = 1e-9;  // of weights that are alike but for their last digits
+  return standard_error <= kRounding * std::fabs(value);
+}
+
+Estimate estimate_total(const std::vector<double>& replicates, double rays) {
+  Estimate e = estimate_mean(replicates);
+  if (!agree(e.value, e.standard_error) || !(rays > 0.0)) return e;
+  e.standard_error = error_of_agreement(replicates.size()) * std::fabs(e.value) / rays;
+  const double half = student_t95(static_cast<int>(replicates.size()) - 1) * e.standard_error;
+  e.low = e.value - half;
+  e.high = e.value + half;
+  return e;
+}
+
 Estimate estimate_jackknife(double pooled, const std::vector<double>& left_out) {
   const double count = static_cast<double>(left_out.size());
   double mean = 0.0;

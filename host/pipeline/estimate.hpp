@@ -19,6 +19,17 @@ double normal_variance_of_variance(int replicates);
 /// Mean, standard error, interval and relative variance of the variance of at least two replicates.
 Estimate estimate_mean(const std::vector<double>& replicates);
 
+/// Standard error of a total on which all replicates agree, over what one ray adds to a replicate. Where every ray
+/// counts alike their number can be the same in all, and the mean number is no whole one: of R replicates that saw none
+/// of an event, up to 3.0/R of one each are missed (the 95 % Poisson bound of none); that over t95.
+double error_of_agreement(std::uint64_t replicates);
+
+/// Whether replicates of this mean and standard error agree: their spread is that of rounding.
+bool agree(double value, double standard_error);
+
+/// estimate_mean() of a total that so many rays of each replicate bring, none too small where the replicates agree.
+Estimate estimate_total(const std::vector<double>& replicates, double rays);
+
 /// A ratio-like statistic of pooled sums with its jackknife error: `pooled` over all replicates, `left_out[r]` over all
 /// but r.
 Estimate estimate_jackknife(double pooled, const std::vector<double>& left_out);

@@ -28,8 +28,9 @@ void table_results(const RoomResults& r) {
           table.name = block.name;
           table.unit = block.unit;
           for (std::uint64_t k = 0; k < block.width; ++k) {
-            table.values.push_back(estimate_mean(
-                per_replicate(r.plan, [&](std::uint32_t rep) { return r.read.value(b, v, l, c, rep, k); })));
+            table.values.push_back(estimate_total(
+                per_replicate(r.plan, [&](std::uint32_t rep) { return r.read.value(b, v, l, c, rep, k); }),
+                rays_of(r.read)));
           }
           r.out.table.push_back(std::move(table));
         }

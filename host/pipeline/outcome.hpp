@@ -36,8 +36,9 @@ struct Target {
 /// Every total of a pass, in result units.
 std::vector<Target> targets_of(const PassPlan& plan, const Geometry& geometry, const Sums& sums);
 
-/// Largest relative standard error over the targets (NaN if all are zero), and the first target's value and error.
-void largest_error(const std::vector<Target>& targets, ErrorPoint* point);
+/// Largest relative standard error over the targets (NaN if all are zero), and the first target's value and error, from
+/// `rays` of each replicate.
+void largest_error(const std::vector<Target>& targets, double rays, ErrorPoint* point);
 
 /// Appends what the pass found to the result's detectors, energy books and diagnostics.
 void add_results(const Scene& scene, const PassPlan& plan, const PassOutcome& outcome, Result* result);

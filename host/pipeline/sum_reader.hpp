@@ -52,6 +52,11 @@ class SumReader {
   double weight_, unit_;
 };
 
+/// Rays of a replicate, of a beam that the body fills.
+inline double rays_of(const SumReader& read) {
+  return static_cast<double>(read.points());
+}
+
 template <class Function>
 std::vector<double> per_replicate(const PassPlan& plan, Function&& function) {
   std::vector<double> values(plan.request.replicates);

@@ -13,35 +13,36 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// The error of a mean vector's length: its error along the vector. What lies across changes the length in second
 /// order.
-double error_of_length(const Target& target, const std::vector<double>& means, double length) {
+double error_of_length(const Target& target, const std::vector<double>& means, double length, double rays) {
   std::vector<double> along(target.components.front().size());
   for (std::size_t r = 0; r < along.size(); ++r) {
     for (std::size_t k = 0; k < means.size(); ++k) along[r] += target.components[k][r] * (means[k] / length);
   }
-  return estimate_mean(along).standard_error;
+  return estimate_total(along, rays).standard_error;
 }
 
 }  // namespace
 
-void largest_error(const std::vector<Target>& targets, ErrorPoint* point) {
+void largest_error(const std::vector<Target>& targets, double rays, ErrorPoint* point) {
   point->relative_standard_error = point->first_total = point->first_standard_error = kNan;
   for (std::size_t t = 0; t < targets.size(); ++t) {
     double value = 0.0, error = 0.0;
     std::vector<double> means;
     for (const auto& axis : targets[t].components) {
-      const Estimate e = estimate_mean(axis);
+      const Estimate e = estimate_total(axis, rays);
       means.push_back(e.value);
       value += e.value * e.value;
       error += e.standard_error * e.standard_error;
     }
     value = std::sqrt(value);
+    error = std::sqrt(error);
     if (t == 0) {
       point->first_total = value;
-      point->first_standard_error = value > 0.0 ? error_of_length(targets[t], means, value) : std::sqrt(error);
+      point->first_standard_error = value > 0.0 ? error_of_length(targets[t], means, value, rays) : error;
     }
     const double scale = targets[t].scale > 0.0 ? targets[t].scale : value;
     if (!(scale > 0.0)) continue;
-    const double relative = std::sqrt(error) / scale;
+    const double relative = error / scale;
     if (!(point->relative_standard_error >= relative)) point->relative_standard_error = relative;
   }
 }

@@ -18,6 +18,7 @@
 #include "pipeline/pass_runner.hpp"
 #include "pipeline/plan.hpp"
 #include "pipeline/warnings.hpp"
+#include "text/text.hpp"
 
 namespace clray {
 namespace {
@@ -148,7 +149,7 @@ class PassDriver {
     if (plan_.request.paints()) {
       point.relative_standard_error = picture_error(plan_, sums);
     } else {
-      largest_error(targets_of(plan_, geometry_, sums), &point);
+      largest_error(targets_of(plan_, geometry_, sums), static_cast<double>(sums.points), &point);
     }
     out_.errors.push_back(point);
     return point.relative_standard_error;
@@ -230,10 +231,10 @@ class PassDriver {
 void check_diagnostics(const Result& result, bool allowed) {
   const Diagnostics& d = result.diagnostics;
   if (d.non_finite + d.stack_overflow + d.accumulator_overflow == 0 || allowed) return;
-  throw Error(
-      ErrorCode::bug,
-      fmt::format("the result is not sound: {} weights not finite, {} stack overflows, {} accumulator overflows",
-                  d.non_finite, d.stack_overflow, d.accumulator_overflow));
+  throw Error(ErrorCode::bug,
+              fmt::format("the result is not sound: {} not finite, {}, {}", text::counted(d.non_finite, "weight"),
+                          text::counted(d.stack_overflow, "stack overflow"),
+                          text::counted(d.accumulator_overflow, "accumulator overflow")));
 }
 
 void add_unique(const std::vector<std::string>& from, std::vector<std::string>* to) {
@@ -304,10 +305,10 @@ Result trace(const Scene& scene, Device& device, const TraceHooks& hooks) {
   check_diagnostics(result, scene.trace.allow_failures);
   order_results(scene, &result);
   if (geometry.conflicts != 0)
-    result.warnings.push_back(
-        fmt::format("{} pairs of faces of different materials overlap in one plane and look the same way: the first in "
-                    "canonical order is hit; remove one of each",
-                    geometry.conflicts));
+    result.warnings.push_back(fmt::format(
+        "faces of different materials overlap in one plane and look the same way ({}): the first in canonical "
+        "order is hit; remove one of each",
+        text::counted(geometry.conflicts, "pair")));
   std::vector<std::string> early = std::move(result.warnings);
   add_warnings(scene, ending, &result);
   result.warnings.insert(result.warnings.end(), early.begin(), early.end());

@@ -14,6 +14,7 @@
 #include "scene/tables.hpp"
 #include "shared/portable.h"
 #include "text/columns.hpp"
+#include "text/text.hpp"
 
 namespace clray {
 namespace {
@@ -25,10 +26,6 @@ std::string vector_text(const Vec3& v) {
 }
 double degrees(double radians) {
   return radians / CLRAY_PI * 180.0;
-}
-
-std::string count_text(std::size_t n, const std::string& one) {
-  return fmt::format("{} {}{}", n, one, n == 1 ? "" : "s");
 }
 
 std::string row_text(const TableRow& row, const std::map<std::string, double>& parameters,
@@ -43,7 +40,7 @@ std::string row_text(const TableRow& row, const std::map<std::string, double>& p
     const auto spectrum = spectra.find(row.keys[i].name);
     if (spectrum == spectra.end() && std::isnan(values[i])) continue;
     const std::string value = spectrum != spectra.end()
-                                  ? "spectrum of " + count_text(spectrum->second.value.size(), "point")
+                                  ? "spectrum of " + text::counted(spectrum->second.value.size(), "point")
                               : row.keys[i].is_switch ? (values[i] != 0.0 ? "yes" : "no")
                                                       : fmt::format("{:.6g}", values[i]);
     text += fmt::format("{}{} {}", text.empty() ? "" : ", ", row.keys[i].name, value);
@@ -75,7 +72,7 @@ std::string mesh_text(const Mesh& mesh) {
   }
   const MeshReport& r = mesh.report;
   std::string text =
-      fmt::format("{}, {:.6g} x {:.6g} x {:.6g} m, area {:.6g} m2", count_text(mesh.triangles.size(), "triangle"),
+      fmt::format("{}, {:.6g} x {:.6g} x {:.6g} m, area {:.6g} m2", text::counted(mesh.triangles.size(), "triangle"),
                   high.x - low.x, high.y - low.y, high.z - low.z, r.area_m2);
   if (r.degenerate > 0) text += fmt::format(", {} degenerate", r.degenerate);
   text += r.boundary_edges + r.non_manifold_edges == 0
@@ -134,7 +131,7 @@ std::string body_text(const Scene& scene) {
 }
 
 std::string motion_text(const Motion& m) {
-  return key_text(m) + ": " + count_text(orientation_count(m), "orientation");
+  return key_text(m) + ": " + text::counted(orientation_count(m), "orientation");
 }
 
 }  // namespace

@@ -13,12 +13,13 @@
 #include "scene/scene_csv.hpp"
 #include "scene/spectrum.hpp"
 #include "scene/value_checks.hpp"
+#include "text/text.hpp"
 
 namespace clray {
 namespace {
 
 std::string count_text(std::size_t n, const std::string& one) {
-  return n == 0 ? "" : fmt::format("{} {}{}", n, one, n == 1 ? "" : "s");
+  return n == 0 ? "" : text::counted(n, one);
 }
 
 // ---- source

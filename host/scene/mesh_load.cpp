@@ -15,6 +15,7 @@
 #include "scene/mesh_soup.hpp"
 #include "scene/mesh_triangulate.hpp"
 #include "shared/portable.h"
+#include "text/text.hpp"
 
 namespace clray {
 
@@ -74,9 +75,11 @@ void triangulate_faces(const PolygonSoup& soup, Mesh& mesh, const std::string& p
     }
   }
   if (crossing > 0) {
-    mesh.warnings.push_back(path + ": " + std::to_string(crossing) +
-                            " polygons cross themselves or have no plane (first: face " +
-                            std::to_string(first_crossing) + "); they are fans from their first corner");
+    mesh.warnings.push_back(path + ": " +
+                            text::counted(crossing, "polygon crosses itself or has no plane",
+                                          "polygons cross themselves or have no plane") +
+                            " (first: face " + std::to_string(first_crossing) +
+                            "); a fan from the first corner is taken");
   }
 }
 

@@ -10,6 +10,7 @@
 #include "scene/mesh_readers.hpp"
 #include "scene/mesh_text.hpp"
 #include "text/near_miss.hpp"
+#include "text/text.hpp"
 
 namespace clray {
 
@@ -202,7 +203,8 @@ class PlyBody {
     Tally tail;
     if (encoding_ != Encoding::text) {
       if (bytes_left() > 0) tail.add(0);
-      tail.warn(path_, std::to_string(bytes_left()) + " bytes follow the last element; they are left out", warnings);
+      tail.warn(path_, text::counted(bytes_left(), "byte follows", "bytes follow") + " the last element; left out",
+                warnings);
     } else if (text_.next_filled_line()) {
       tail.add(text_.line());
       tail.warn(path_, "what follows the last of the elements that the header counts is left out", warnings);

@@ -14,6 +14,7 @@
 #include "scene/material.hpp"
 #include "scene/scene_parts.hpp"
 #include "scene/tables.hpp"
+#include "text/text.hpp"
 
 namespace clray {
 namespace {
@@ -116,8 +117,8 @@ void replace_observers(const SceneOptions& options, Scene* scene) {
     keep(&Observer::range_m, "range_m");
     keep(&Observer::acceptance_rad, "acceptance_mrad");
     one.name.clear();
-    scene->warnings.push_back("--observer stands instead of the scene's " + std::to_string(before.size()) +
-                              " observers" + lost);
+    scene->warnings.push_back("--observer stands instead of the scene's " + text::counted(before.size(), "observer") +
+                              lost);
   }
   one.monostatic = !options.observer;
   if (options.observer) one.direction = option_direction(*options.observer, "--observer");

@@ -9,6 +9,7 @@
 #include "scene/mesh_readers.hpp"
 #include "scene/mesh_text.hpp"
 #include "scene/point_index.hpp"
+#include "text/text.hpp"
 
 namespace clray {
 
@@ -88,8 +89,8 @@ PolygonSoup read_binary(const std::string& path, const std::string& content) {
     Tally tail;
     tail.add(0);
     tail.warn(path,
-              std::to_string(content.size() - size) + " bytes follow the " + std::to_string(count) +
-                  " faces that the header counts; they are left out",
+              text::counted(content.size() - size, "byte follows", "bytes follow") + " the " +
+                  text::counted(count, "face") + " that the header counts; left out",
               soup.warnings);
   }
   return soup;

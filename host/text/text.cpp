@@ -94,6 +94,13 @@ std::string ascii(std::string_view text) {
   return plain;
 }
 
+std::string counted(std::uint64_t count, std::string_view one, std::string_view several) {
+  std::string text = std::to_string(count) + " ";
+  text += count == 1 || several.empty() ? one : several;
+  if (count != 1 && several.empty()) text += 's';
+  return text;
+}
+
 std::string hex16(unsigned long long value) {
   std::string digits(16, '0');
   for (int i = 15; i >= 0; --i, value >>= 4) digits[i] = "0123456789abcdef"[value & 15];

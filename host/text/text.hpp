@@ -25,6 +25,9 @@ std::size_t decode_utf8(std::string_view text, std::size_t i, std::uint32_t* cha
 /// Only printable ASCII, as FITS headers demand; the rest becomes '?'.
 std::string ascii(std::string_view text);
 
+/// "1 pair", "2 pairs", "0 pairs"; with `several`, "1 byte follows", "3 bytes follow".
+std::string counted(std::uint64_t count, std::string_view one, std::string_view several = {});
+
 /// 16 hexadecimal digits.
 std::string hex16(unsigned long long value);
 

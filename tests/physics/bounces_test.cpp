@@ -131,3 +131,36 @@ TEST_CASE("energy books of concave bodies with every surface, grazing narrow pea
     }
   }
 }
+
+TEST_CASE("where every ray counts alike and all replicates agree, the claim leaves open a share of one ray each") {
+  // A floor and a Lambert wall on its edge at 45°: the beam's edges are theirs, so that each replicate has as many rays
+  // on the wall as the others, while the strata reach past the body by some 1e-8 of it.
+  for (const bool mirrored : {false, true}) {
+    clray::Scene scene = scene_of(plate_mesh(2, 2), mirrored ? mirror(1.0) : lambert(0.0));
+    add(scene, plate_mesh(2, 2), lambert(0.5)).transform = {{-1, 0, 1}, {0, 1, 0}, kPi / 2.0, 1.0};
+    const clray::Vec3 s = toward(kPi / 4.0);
+    bistatic(scene, s, {0.8, -0.6, 0.0});
+    scene.trace.max_bounces = 2;
+    detect(scene, "spectrometer");
+    for (const int log2_rays : {14, 18}) {
+      const clray::Estimate a = run(rays(scene, log2_rays)).spectrometer.at(0).intensity_m2_per_sr;
+      const double exact = 0.5 / kPi * s.x * 0.8 * (mirrored ? 8.0 : 4.0);
+      INFO(a.value, " +- ", a.standard_error, ", exact ", exact);
+      CHECK(std::fabs(a.value - exact) <= 4.0 * a.standard_error);
+      CHECK(a.low < exact);
+      CHECK(a.high > exact);
+      // Not more than one ray of each replicate.
+      CHECK(a.standard_error <= a.value * 16.0 / std::pow(2.0, log2_rays));
+    }
+  }
+}
+
+TEST_CASE("a black plate across the beam is pushed as it must be, and the claim is that of the rays there were") {
+  clray::Scene scene = scene_of(plate_mesh(1, 1), lambert(0.0));
+  detect(scene, "pressure");
+  const clray::VectorEstimate c = run(rays(scene, 18)).pressure.at(0).coefficient_m2;
+  CHECK(c.value.z == relative(-1.0).epsilon(1e-9));
+  // 3/16 of a ray of 2^14 at 95 %: over t95 of 15 degrees of freedom, 2.1314.
+  CHECK(c.standard_error.z == relative(3.0 / 16.0 / 2.1314495 / 16384.0).epsilon(1e-6));
+  CHECK(c.standard_error.x == 0.0);
+}

@@ -180,7 +180,7 @@ TEST_CASE("FNV-1a gives its published answers") {
 TEST_CASE("the first total's error: of a number its own, of a vector that along it") {
   const std::vector<double> x = numbers(16, 5), y = numbers(16, 6), z = numbers(16, 7);
   ErrorPoint point;
-  largest_error({{{x}, 0.0}}, &point);
+  largest_error({{{x}, 0.0}}, 1000.0, &point);
   CHECK(point.first_total == estimate_mean(x).value);
   CHECK(point.first_standard_error == doctest::Approx(estimate_mean(x).standard_error).epsilon(1e-14));
   CHECK(point.relative_standard_error == doctest::Approx(point.first_standard_error / point.first_total));
@@ -195,13 +195,13 @@ TEST_CASE("the first total's error: of a number its own, of a vector that along 
   }
   // A second target with a larger error decides the relative error, not the first total.
   const std::vector<double> coarse = {1.0, 3.0, 1.0, 3.0, 1.0, 3.0, 1.0, 3.0, 1.0, 3.0, 1.0, 3.0, 1.0, 3.0, 1.0, 3.0};
-  largest_error({{{x, y, z}, 0.0}, {{coarse}, 0.0}}, &point);
+  largest_error({{{x, y, z}, 0.0}, {{coarse}, 0.0}}, 1000.0, &point);
   CHECK(point.first_total == doctest::Approx(length).epsilon(1e-14));
   CHECK(point.first_standard_error == doctest::Approx(std::sqrt(square)).epsilon(1e-12));
   CHECK(point.relative_standard_error == doctest::Approx(0.5 * estimate_mean(coarse).standard_error));
 
   const std::vector<double> none(16, 0.0);
-  largest_error({{{none, none, none}, 0.0}}, &point);
+  largest_error({{{none, none, none}, 0.0}}, 1000.0, &point);
   CHECK(point.first_total == 0.0);
   CHECK(point.first_standard_error == 0.0);
   CHECK(std::isnan(point.relative_standard_error));
@@ -231,4 +231,23 @@ TEST_CASE("relative variance of the variance: normal samples, one outlier, the j
   CHECK(estimate_jackknife(total / 16.0, left_out).relative_variance_of_variance ==
         doctest::Approx(estimate_mean(x).relative_variance_of_variance).epsilon(1e-9));
   CHECK(std::isnan(estimate_mean(std::vector<double>(16, 2.0)).relative_variance_of_variance));
+}
+
+TEST_CASE("replicates that agree leave open a share of one ray each, and of nothing else") {
+  // 16 replicates without an event: 3/16 of one each, over t95 = 2.131 of 15 degrees of freedom.
+  CHECK(error_of_agreement(16) == doctest::Approx(3.0 / 16.0 / 2.1314495).epsilon(1e-7));
+  const Estimate e = estimate_total(std::vector<double>(16, -5.0), 1000.0);
+  CHECK(e.value == -5.0);
+  CHECK(e.standard_error == doctest::Approx(5.0 / 1000.0 * 0.0879683).epsilon(1e-5));
+  CHECK(e.high - e.value == doctest::Approx(5.0 / 1000.0 * 3.0 / 16.0).epsilon(1e-6));
+  CHECK(e.value - e.low == doctest::Approx(e.high - e.value).epsilon(1e-12));
+  std::vector<double> rounded(16, 1.0);
+  rounded[3] += 1e-12;
+  CHECK(estimate_total(rounded, 1000.0).standard_error == doctest::Approx(0.0879683e-3).epsilon(1e-5));
+  // One ray more in one replicate is a spread of its own: that ray over 16.
+  rounded[3] = 1.0 + 1e-3;
+  CHECK(estimate_total(rounded, 1000.0).standard_error == estimate_mean(rounded).standard_error);
+  CHECK(estimate_total(rounded, 1000.0).standard_error == doctest::Approx(1e-3 / 16.0).epsilon(1e-9));
+  CHECK(estimate_total(std::vector<double>(16, 0.0), 1000.0).standard_error == 0.0);
+  CHECK(estimate_total(std::vector<double>(16, 2.0), 0.0).standard_error < 1e-15);
 }

@@ -131,7 +131,7 @@ TEST_CASE("repeated corners give a triangle without area; a crossing outline giv
   const auto bow = load_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3 4\n");
   CHECK(bow->triangles.size() == 2);
   REQUIRE(bow->warnings.size() == 1);
-  CHECK(bow->warnings[0].find("1 polygons cross themselves or have no plane (first: face 1)") != std::string::npos);
+  CHECK(bow->warnings[0].find("1 polygon crosses itself or has no plane (first: face 1)") != std::string::npos);
 }
 
 TEST_CASE("the hexagonal prism has its closed-form area and volume and is closed") {

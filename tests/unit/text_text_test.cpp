@@ -45,3 +45,12 @@ TEST_CASE("a script that fails says so and leaves no picture; names no folder, t
   CHECK(plot.draw(".").rfind("no nothing.png: gnuplot ", 0) == 0);
   CHECK(Plot("nothing.png").draw("/no/such/folder").rfind("no nothing.png: ", 0) == 0);
 }
+
+TEST_CASE("counts of one and of several") {
+  CHECK(counted(0, "pair") == "0 pairs");
+  CHECK(counted(1, "pair") == "1 pair");
+  CHECK(counted(2, "pair") == "2 pairs");
+  CHECK(counted(1, "byte follows", "bytes follow") == "1 byte follows");
+  CHECK(counted(3, "byte follows", "bytes follow") == "3 bytes follow");
+  CHECK(counted(0, "byte follows", "bytes follow") == "0 bytes follow");
+}

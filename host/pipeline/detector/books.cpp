@@ -29,7 +29,7 @@ EnergyBooks books_of(const RoomResults& x, const LaneRecord& record) {
       for (std::size_t r = 0; r < mean.size(); ++r) mean[r] += one[r];
     }
     for (double& m : mean) m /= static_cast<double>(views);
-    *entries[which] = estimate_mean(mean);
+    *entries[which] = estimate_total(mean, rays_of(x.read));
   }
   return e;
 }

@@ -121,7 +121,9 @@ void delay_bins(const RoomResults& x, std::size_t v, std::size_t l, std::size_t 
     for (std::uint32_t r = 0; r < replicates; ++r) squares += (sum(r, b) - mean) * (sum(r, b) - mean);
     const bool resolved = hits >= 10 && 2 * replicates_hit >= replicates;
     out->bin_m2_per_sr.push_back(mean);
-    out->bin_standard_error.push_back(std::sqrt(squares / (count * (count - 1.0))));
+    const double spread = std::sqrt(squares / (count * (count - 1.0)));
+    const double of_hit = hits == 0 ? 0.0 : error_of_agreement(replicates) * mean * count / static_cast<double>(hits);
+    out->bin_standard_error.push_back(agree(mean, spread) ? of_hit : spread);
     out->hits.push_back(hits);
     out->resolved.push_back(resolved);
     out->bin_upper_bound.push_back(resolved ? 0.0 : largest * poisson_upper95(hits) * share);
@@ -135,7 +137,7 @@ void delay_bins(const RoomResults& x, std::size_t v, std::size_t l, std::size_t 
 void delay_record(const RoomResults& x, std::size_t v, std::size_t l, std::size_t c) {
   DelayResult d;
   d.key = x.key(v, l, c);
-  d.intensity_m2_per_sr = estimate_mean(intensities(x.plan, x.read, v, l, c));
+  d.intensity_m2_per_sr = intensity_estimate(x.plan, x.read, v, l, c);
   const double total = d.intensity_m2_per_sr.value;
   if (total > 0.0) {
     delay_moments(x.plan, x.read, v, l, c, &d);

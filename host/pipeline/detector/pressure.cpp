@@ -30,7 +30,8 @@ VectorEstimate vector_of(const RoomResults& x, std::size_t v, const LaneRecord& 
   VectorEstimate out;
   for (int axis = 0; axis < 3; ++axis) {
     const Estimate e =
-        estimate_mean(push(x.plan, x.detector, x.read, v, record, first, last, k + static_cast<std::uint64_t>(axis)));
+        estimate_total(push(x.plan, x.detector, x.read, v, record, first, last, k + static_cast<std::uint64_t>(axis)),
+                       rays_of(x.read));
     out.value[axis] = e.value;
     out.standard_error[axis] = e.standard_error;
     out.relative_variance_of_variance[axis] = e.relative_variance_of_variance;
@@ -43,7 +44,7 @@ PressureResult pressure_record(const RoomResults& x, std::size_t v, const LaneRe
   PressureResult p;
   p.key = x.key(v, record.first);
   p.band = x.band(record.first);
-  p.source_W_m2 = source_band_W_m2(x.scene.source, p.band);
+  p.source_W_m2 = source_band_W_m2(x.scene.source, p.band) * x.plan.request.orientations[v].light;
   p.sun = x.plan.request.orientations[v].source;
   p.coefficient_m2 = vector_of(x, v, record, 0, components, 0);
   p.torque_coefficient_m3 = vector_of(x, v, record, 0, components, 3);
@@ -51,7 +52,7 @@ PressureResult pressure_record(const RoomResults& x, std::size_t v, const LaneRe
     p.component_m2.push_back(vector_of(x, v, record, k, k + 1, 0));
     p.component_m3.push_back(vector_of(x, v, record, k, k + 1, 3));
   }
-  p.absorbed_m2 = estimate_mean(book(x.plan, x.read, v, record, CLRAY_BOOK_ABSORBED));
+  p.absorbed_m2 = estimate_total(book(x.plan, x.read, v, record, CLRAY_BOOK_ABSORBED), rays_of(x.read));
   return p;
 }
 

@@ -27,7 +27,7 @@ void spectrometer_record(const RoomResults& x, std::size_t v, std::size_t l, std
   SpectrometerResult s;
   s.key = x.key(v, l, c);
   s.band = x.band(l);
-  s.intensity_m2_per_sr = estimate_mean(intensities(x.plan, x.read, v, l, c));
+  s.intensity_m2_per_sr = intensity_estimate(x.plan, x.read, v, l, c);
   s.source_W_m2 = source_band_W_m2(x.scene.source, s.band) * instant.light;
   s.magnitude_AB = s.magnitude_standard_error = kNan;
   if (const double range = instant.ranges_m[observer]; range > 0.0) {
