@@ -198,7 +198,7 @@ BuiltInScene built_in_scene(const ProgramContent& content) {
   for (ClrayPrimitive& primitive : built.geometry.primitives) primitive.component %= content.components;
   // Only the first, which may be hinged, is asked for again; their number is that of the sums.
   scene.components.resize(content.components, scene.components.back());
-  built.plan = plan_pass(scene, built.geometry, request_of(content, scene), nullptr);
+  built.plan = plan_pass(scene, built.geometry, request_of(content, scene), false);
   part_lanes(content.lanes, &built.plan.surfaces);
   // Any table of directional reflectance will do, and true ones would take most of the test's time.
   for (ClrayMaterial& material : built.plan.surfaces.materials)

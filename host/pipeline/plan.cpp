@@ -173,12 +173,13 @@ double detector_value(const DetectorSpec& spec, const std::string& key) {
   throw Error(ErrorCode::bug, "detector " + spec.kind + " has no key " + key);
 }
 
-PassPlan plan_pass(const Scene& scene, const Geometry& geometry, PassRequest request, ReflectanceMemo* memo) {
+PassPlan plan_pass(const Scene& scene, const Geometry& geometry, PassRequest request, bool reflectances) {
   PassPlan plan;
   plan.request = std::move(request);
   plan.surfaces = build_surfaces(scene, plan.request.lanes);
   plan.traits = traits_of(scene, plan.request, plan.surfaces);
-  if (plan.traits.scatter || !scene.trace.specialise) plan.surfaces = build_surfaces(scene, plan.request.lanes, memo);
+  if (reflectances && (plan.traits.scatter || !scene.trace.specialise))
+    plan.surfaces = build_surfaces(scene, plan.request.lanes, true);
   plan.beams = build_beams(scene, geometry, plan.request);
   plan.paths = path_range(scene, geometry, plan.request, plan.beams);
   plan.scales = scales_of(scene, geometry, plan);
@@ -192,9 +193,7 @@ PassPlan plan_pass(const Scene& scene, const Geometry& geometry, PassRequest req
 
 std::vector<PassPlan> plan_passes(const Scene& scene, const Geometry& geometry) {
   std::vector<PassPlan> plans;
-  ReflectanceMemo memo;
-  for (PassRequest& request : pass_requests(scene))
-    plans.push_back(plan_pass(scene, geometry, std::move(request), &memo));
+  for (PassRequest& request : pass_requests(scene)) plans.push_back(plan_pass(scene, geometry, std::move(request)));
   return plans;
 }
 

@@ -125,8 +125,8 @@ std::vector<PassPlan> plan_passes(const Scene& scene, const Geometry& geometry);
 /// What each pass of a scene is for: detectors that can share rays share a pass, and so do lanes.
 std::vector<PassRequest> pass_requests(const Scene& scene);
 
-/// The plan of one pass; `memo` is shared by all of a scene (null: no tables of directional reflectance).
-PassPlan plan_pass(const Scene& scene, const Geometry& geometry, PassRequest request, ReflectanceMemo* memo);
+/// The plan of one pass. Without `reflectances`, materials lack their tables of directional reflectance.
+PassPlan plan_pass(const Scene& scene, const Geometry& geometry, PassRequest request, bool reflectances = true);
 
 /// The program of a pass, from everything else that its plan says.
 Specialised specialise(const Scene& scene, const Geometry& geometry, const PassPlan& plan);

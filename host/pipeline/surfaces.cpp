@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
+#include <mutex>
+#include <utility>
 
 #include "clray/error.hpp"
 #include "pipeline/light_parts.hpp"
@@ -55,6 +58,34 @@ std::vector<Lane> lanes_in(const Scene& scene, const std::vector<Band>& bands, c
     }
   }
   return lanes;
+}
+
+/// The reflectance table of a material with these values of its row's keys. The process keeps a table for further
+/// passes and traces: making one may take a second, and its key holds everything that it depends on.
+std::shared_ptr<const std::vector<double>> known_reflectance(const ClrayMaterial& material,
+                                                             const std::vector<double>& values,
+                                                             const BrdfTable* measured) {
+  constexpr std::size_t kMostKept = 4096;
+  static std::mutex mutex;
+  static std::map<std::vector<double>, std::shared_ptr<const std::vector<double>>> kept;
+  std::vector<double> key(values), tables, angles;
+  key.push_back(material.model);
+  ClrayMaterial alone = material;  // with its own table first
+  alone.table = 0;
+  if (measured != nullptr) {
+    add_table(tables, *measured);
+    key.insert(key.end(), tables.begin(), tables.end());
+    angles = measured->theta_i_rad;
+  }
+  {
+    const std::lock_guard<std::mutex> lock(mutex);
+    if (const auto found = kept.find(key); found != kept.end()) return found->second;
+  }
+  auto nodes = std::make_shared<const std::vector<double>>(
+      reflectance_table([&](double mu) { return surface_reflectance(alone, tables, mu); }, angles));
+  const std::lock_guard<std::mutex> lock(mutex);
+  if (kept.size() >= kMostKept) kept.clear();
+  return kept.emplace(std::move(key), std::move(nodes)).first->second;
 }
 
 }  // namespace
@@ -111,13 +142,13 @@ std::vector<std::vector<Lane>> lane_groups(const Scene& scene, const std::vector
   return out;
 }
 
-Surfaces build_surfaces(const Scene& scene, const std::vector<Lane>& lanes, ReflectanceMemo* memo) {
+Surfaces build_surfaces(const Scene& scene, const std::vector<Lane>& lanes, bool reflectances) {
   Surfaces s;
   s.columns = static_cast<std::uint32_t>(scene.materials.size());
   std::vector<bool> used(table("brdf").size(), false);
   std::map<const BrdfTable*, std::uint32_t> placed;
-  std::map<std::pair<const BrdfTable*, std::vector<double>>, std::uint32_t> known;  // offsets of reflectance tables
-  const std::vector<double> none;
+  std::map<const std::vector<double>*, std::uint32_t> known;  // offsets of reflectance tables
+  std::vector<std::shared_ptr<const std::vector<double>>> held;
   for (const Lane& lane : lanes) {
     for (const Material& base : scene.materials) {
       const Material& m = material_of(scene, lane, base);
@@ -135,18 +166,14 @@ Surfaces build_surfaces(const Scene& scene, const std::vector<Lane>& lanes, Refl
         if (!placed.count(m.table.get())) placed[m.table.get()] = add_table(s.tables, *m.table);
         out.table = placed[m.table.get()];
       }
-      if (memo != nullptr) {
-        std::pair<const BrdfTable*, std::vector<double>> key(m.table.get(), values);
-        key.second.push_back(row);
-        if (!known.count(key)) {
-          if (!memo->count(key))
-            (*memo)[key] = reflectance_table([&](double mu) { return surface_reflectance(out, s.tables, mu); },
-                                             m.table ? m.table->theta_i_rad : none);
-          const std::vector<double>& nodes = (*memo)[key];
-          known[key] = static_cast<std::uint32_t>(s.tables.size());
-          s.tables.insert(s.tables.end(), nodes.begin(), nodes.end());
+      if (reflectances) {
+        const std::shared_ptr<const std::vector<double>> nodes = known_reflectance(out, values, m.table.get());
+        if (!known.count(nodes.get())) {
+          known[nodes.get()] = static_cast<std::uint32_t>(s.tables.size());
+          s.tables.insert(s.tables.end(), nodes->begin(), nodes->end());
+          held.push_back(nodes);
         }
-        out.reflectance = known[key];
+        out.reflectance = known[nodes.get()];
       }
       s.one_sided = s.one_sided || !m.two_sided;
       s.delta = s.delta || table("brdf")[row].delta;

@@ -53,11 +53,8 @@ std::vector<LaneRecord> lane_records(const std::vector<Lane>& lanes);
 std::vector<std::vector<Lane>> lane_groups(const Scene& scene, const std::vector<Lane>& lanes, bool scatter,
                                            std::size_t most);
 
-/// Tables of directional reflectance by what they depend on, so that the passes of a scene make each once.
-using ReflectanceMemo = std::map<std::pair<const BrdfTable*, std::vector<double>>, std::vector<double>>;
-
-/// Materials of `lanes`; with `memo`, tables of directional reflectance too.
-Surfaces build_surfaces(const Scene& scene, const std::vector<Lane>& lanes, ReflectanceMemo* memo = nullptr);
+/// Materials of `lanes`; with `reflectances`, tables of directional reflectance too.
+Surfaces build_surfaces(const Scene& scene, const std::vector<Lane>& lanes, bool reflectances = false);
 
 /// Bound of f·mu_o over all lanes and materials at cos(phase/2); 1/sr.
 double weight_bound(const Surfaces& surfaces, double cos_half_phase);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The laws on random scenes (tests/laws) as rows of the table: 6 scenes each, 1000 with CLRAY_LONG_TESTS=1. The tests
+// The laws on random scenes (tests/laws) as rows of the table: 20 scenes each, 334 with CLRAY_LONG_TESTS=1. The tests
 // run them as tests_laws.
 #include <fmt/format.h>
 
