@@ -7,58 +7,12 @@
 #include <array>
 
 #include "pipeline/detector/room.hpp"
+#include "pipeline/detector/sums.hpp"
 #include "pipeline/estimate.hpp"
 #include "scene/spectrum.hpp"
 
 namespace clray {
 namespace {
-
-/// Makes a result of each number that has a unit: the default of DetectorRoom::results.
-void table_results(const RoomResults& r) {
-  const SumShape& shape = r.plan.layout.shape;
-  for (std::size_t v = 0; v < shape.views; ++v) {
-    for (std::size_t l = 0; l < shape.lanes; ++l) {
-      for (std::uint32_t b = r.detector.first_block; b < r.detector.last_block; ++b) {
-        const SumBlock& block = r.plan.layout.blocks[b];
-        if (block.unit.empty() || block.counts()) continue;
-        const bool connections = block.rows == SumRows::connection;
-        for (std::size_t c = 0; c < (connections ? shape.connections : 1); ++c) {
-          TableResult table;
-          table.key = connections ? r.key(v, l, c) : r.key(v, l);
-          table.name = block.name;
-          table.unit = block.unit;
-          for (std::uint64_t k = 0; k < block.width; ++k) {
-            table.values.push_back(estimate_total(
-                per_replicate(r.plan, [&](std::uint32_t rep) { return r.read.value(b, v, l, c, rep, k); }),
-                rays_of(r.read)));
-          }
-          r.out.table.push_back(std::move(table));
-        }
-      }
-    }
-  }
-}
-
-/// Makes a target of each number that has a unit: the default of DetectorRoom::targets.
-void table_targets(const PassPlan& plan, const PassDetector& detector, const SumReader& read,
-                   std::vector<Target>* targets) {
-  const SumShape& shape = plan.layout.shape;
-  for (std::uint32_t b = detector.first_block; b < detector.last_block; ++b) {
-    const SumBlock& block = plan.layout.blocks[b];
-    if (block.unit.empty() || block.counts()) continue;
-    for (std::size_t v = 0; v < shape.views; ++v) {
-      for (std::size_t l = 0; l < shape.lanes; ++l) {
-        for (std::size_t c = 0; c < (block.rows == SumRows::connection ? shape.connections : 1); ++c) {
-          for (std::uint64_t k = 0; k < block.width; ++k) {
-            Target t;
-            t.components.push_back(per_replicate(plan, [&](std::uint32_t r) { return read.value(b, v, l, c, r, k); }));
-            targets->push_back(std::move(t));
-          }
-        }
-      }
-    }
-  }
-}
 
 const DetectorRoom& room(const PassDetector& detector) {
   return room_of(table("detector")[static_cast<std::size_t>(detector.row)].id);
@@ -101,6 +55,10 @@ class Places {
 
 }  // namespace
 
+void RoomResults::note(const ResultKey& key, bool found_light) const {
+  lit.note(table("detector")[static_cast<std::size_t>(detector.row)], key, found_light);
+}
+
 ResultKey RoomResults::key(std::size_t v, std::size_t l, std::size_t c) const {
   ResultKey k = key(v, l);
   const auto observer = static_cast<std::size_t>(plan.request.observers[c]);
@@ -133,16 +91,14 @@ std::vector<Target> targets_of(const PassPlan& plan, const Geometry& geometry, c
   const SumReader read(plan, sums);
   for (const PassDetector& detector : plan.detectors) {
     if (!detector.asked) continue;
-    if (room(detector).targets != nullptr) {
-      room(detector).targets(plan, detector, read, geometry, &targets);
-    } else {
-      table_targets(plan, detector, read, &targets);
-    }
+    const auto add = room(detector).targets != nullptr ? room(detector).targets : sums_targets;
+    add(plan, detector, read, geometry, &targets);
   }
   return targets;
 }
 
-void add_results(const Scene& scene, const PassPlan& plan, const PassOutcome& outcome, Result* result) {
+void add_results(const Scene& scene, const PassPlan& plan, const PassOutcome& outcome, Result* result,
+                 LitRecords* lit) {
   const PassRequest& request = plan.request;
   const std::size_t end = request.first_orientation + request.orientations.size();
   if (result->orientations.size() < end) result->orientations.resize(end);
@@ -151,8 +107,8 @@ void add_results(const Scene& scene, const PassPlan& plan, const PassOutcome& ou
   const SumReader read(plan, outcome.sums);
   for (const PassDetector& detector : plan.detectors) {
     if (!detector.asked) continue;
-    const RoomResults r{scene, plan, detector, read, *result};
-    room(detector).results != nullptr ? room(detector).results(r) : table_results(r);
+    const auto results = room(detector).results != nullptr ? room(detector).results : sums_results;
+    results({scene, plan, detector, read, *result, *lit});
   }
   add_counters(outcome.sums, result);
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "pipeline/geometry.hpp"
+#include "pipeline/lit_records.hpp"
 #include "pipeline/plan.hpp"
 
 namespace clray {
@@ -40,8 +41,9 @@ std::vector<Target> targets_of(const PassPlan& plan, const Geometry& geometry, c
 /// `rays` of each replicate.
 void largest_error(const std::vector<Target>& targets, double rays, ErrorPoint* point);
 
-/// Appends what the pass found to the result's detectors, energy books and diagnostics.
-void add_results(const Scene& scene, const PassPlan& plan, const PassOutcome& outcome, Result* result);
+/// Appends what the pass found to the result's detectors, energy books and diagnostics, and notes which records are
+/// lit.
+void add_results(const Scene& scene, const PassPlan& plan, const PassOutcome& outcome, Result* result, LitRecords* lit);
 
 /// Puts the records of all passes in the order of the scene: orientation, variant, band, observer, detector (pictures
 /// and books: detector and observer first).

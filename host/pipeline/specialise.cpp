@@ -10,7 +10,6 @@ namespace clray {
 namespace {
 
 constexpr std::uint64_t kFewKept = 24;  // numbers that a work-item keeps of a row where that is optional
-const char* const kHooks[] = {"hit", "connect", "scatter", "escape", "end", "flush"};
 
 class Specialiser {
  public:
@@ -87,7 +86,7 @@ class Specialiser {
         keep(row, row.sums[s], plan_.layout.blocks[plan_.detectors[first].first_block + s], count, &kept);
     }
     define("CLRAY_KEPT", std::max<std::uint64_t>(kept, 1));
-    for (const char* hook : kHooks) out_.options.defines[std::string("CLRAY_HOOK_") + hook + "(X)"] = hooks[hook];
+    for (const std::string& hook : detector_hooks()) out_.options.defines["CLRAY_HOOK_" + hook + "(X)"] = hooks[hook];
   }
 
   void keep(const TableRow& row, const TableSum& sum, const SumBlock& block, std::uint64_t detectors,

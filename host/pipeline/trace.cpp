@@ -262,6 +262,7 @@ Result trace(const Scene& scene, Device& device, const TraceHooks& hooks) {
   bool target_reached = true;
   double spent = 0.0;
   Ending ending;
+  LitRecords lit;
   for (const PassPlan& plan : plans) {
     PassRunner runner(device, plan, geometry, scene.trace);
     result.seconds.compile += runner.compile_seconds();
@@ -293,7 +294,7 @@ Result trace(const Scene& scene, Device& device, const TraceHooks& hooks) {
     result.errors.insert(result.errors.end(), outcome.errors.begin(), outcome.errors.end());
     add_unique(plan.program.kept, &result.kept);
     add_unique(plan.program.left_out, &result.left_out);
-    add_results(scene, plan, outcome, &result);
+    add_results(scene, plan, outcome, &result, &lit);
     add_unique(doubtful_claims(plan, geometry, outcome.sums), &result.warnings);
   }
   result.target_reached = result.target_asked && target_reached && !result.partial;
@@ -310,7 +311,7 @@ Result trace(const Scene& scene, Device& device, const TraceHooks& hooks) {
         "order is hit; remove one of each",
         text::counted(geometry.conflicts, "pair")));
   std::vector<std::string> early = std::move(result.warnings);
-  add_warnings(scene, ending, &result);
+  add_warnings(scene, ending, lit, &result);
   result.warnings.insert(result.warnings.end(), early.begin(), early.end());
   return result;
 }

@@ -130,66 +130,11 @@ std::vector<std::string> doubtful_claims(const PassPlan& plan, const Geometry& g
 
 namespace {
 
-/// The names of a record, its orientation left out: "delay, observer b, variant dull".
-std::string label(const ResultKey& key, const char* kind) {
-  std::string text = key.detector.empty() ? kind : key.detector;
-  if (!key.observer.empty()) text += ", observer " + key.observer;
-  if (!key.variant.empty()) text += ", variant " + key.variant;
-  if (!key.band.empty()) text += ", band " + key.band;
-  return text;
-}
-
-/// Records that are zero in every orientation, each named once.
-class DarkRecords {
- public:
-  void add(const std::string& name, bool lit) {
-    const auto found = std::find_if(records_.begin(), records_.end(), [&](const auto& r) { return r.first == name; });
-    if (found == records_.end()) {
-      records_.emplace_back(name, lit);
-    } else {
-      found->second = found->second || lit;
-    }
-  }
-  void warn(const char* what, std::vector<std::string>* warnings) const {
-    std::string names;
-    std::size_t dark = 0;
-    for (const auto& [name, lit] : records_) {
-      if (lit) continue;
-      if (++dark <= 4) names += (names.empty() ? "" : "; ") + name;
-    }
-    if (dark == 0) return;
-    if (dark > 4) names += fmt::format("; and {} more", dark - 4);
-    warnings->push_back(fmt::format("{}: all results are zero ({})", what,
-                                    dark == records_.size() && dark > 1 ? "all records" : names));
-  }
-
- private:
-  std::vector<std::pair<std::string, bool>> records_;
-};
-
-void warn_dark(Result* result) {
-  DarkRecords seen, pushed, painted;
-  for (const DelayResult& d : result->delay) seen.add(label(d.key, "delay"), d.intensity_m2_per_sr.value != 0.0);
-  for (const SpectrometerResult& s : result->spectrometer)
-    seen.add(label(s.key, "spectrometer"), s.intensity_m2_per_sr.value != 0.0);
-  for (const PressureResult& p : result->pressure) {
-    const VectorEstimate& c = p.coefficient_m2;
-    pushed.add(label(p.key, "pressure"), c.value != Vec3(0.0) || c.standard_error != Vec3(0.0));
-  }
-  for (const ImageResult& i : result->image) {
-    painted.add(label(i.key, "picture"),
-                std::any_of(i.radiance_per_sr.begin(), i.radiance_per_sr.end(), [](double r) { return r != 0.0; }));
-  }
-  seen.warn("no hits: nothing that was lit is seen", &result->warnings);
-  pushed.warn("no hits: no light meets the body", &result->warnings);
-  painted.warn("black pictures: nothing that is seen was lit", &result->warnings);
-}
-
 /// What no picture shows: light that comes by a mirror, and by a mirror leaves.
 void warn_unseen(Result* result) {
   std::vector<std::string> known;
   for (const ImageResult& i : result->image) {
-    const std::string name = label(i.key, "picture");
+    const std::string name = record_label(i.key);
     if (!(i.unseen_caustics_m2 > 0.0) || std::find(known.begin(), known.end(), name) != known.end()) continue;
     known.push_back(name);
     result->warnings.push_back(
@@ -201,18 +146,18 @@ void warn_unseen(Result* result) {
 
 }  // namespace
 
-void add_warnings(const Scene& scene, const Ending& ending, Result* result) {
+void add_warnings(const Scene& scene, const Ending& ending, const LitRecords& lit, Result* result) {
   result->warnings = scene.warnings;
-  warn_dark(result);
+  for (const std::string& warning : lit.warnings()) result->warnings.push_back(warning);
   for (const EnergyBooks& books : result->energy) {
     if (books.unconnected_specular_m2.value > 0.0)
       result->warnings.push_back(
           fmt::format("mirrors reflect {:.4g} m² that no observer collects ({}): give the observer acceptance_mrad",
-                      books.unconnected_specular_m2.value, label(books.key, "every detector")));
+                      books.unconnected_specular_m2.value, record_label(books.key, "every detector")));
     if (books.incident_m2.value > 0.0 && books.truncated_m2.value > 0.01 * books.incident_m2.value)
       result->warnings.push_back(fmt::format("{:.2g} of the incident energy was cut off at max_bounces = {} ({})",
                                              books.truncated_m2.value / books.incident_m2.value,
-                                             scene.trace.max_bounces, label(books.key, "every detector")));
+                                             scene.trace.max_bounces, record_label(books.key, "every detector")));
   }
   if (result->diagnostics.above_window_fraction > 0.01 || result->diagnostics.below_window_fraction > 0.01)
     result->warnings.push_back("more than 1 % of a pulse lies outside the delay window");

@@ -12,8 +12,9 @@
 
 namespace clray {
 
-/// Appends the scene's warnings and those of a finished result; `ending` says why its tracing stopped.
-void add_warnings(const Scene& scene, const Ending& ending, Result* result);
+/// Appends the scene's warnings and those of a finished result; `ending` says why its tracing stopped, `lit` which of
+/// its records found light.
+void add_warnings(const Scene& scene, const Ending& ending, const LitRecords& lit, Result* result);
 
 /// What speaks against trusting the claimed errors of a pass: totals that rest on few replicates, and peaks that a
 /// surface could send back between the rays (docs/results.md, "Whether a claimed error can be trusted").

@@ -149,14 +149,20 @@ TableSum parse_sum(const TableRow& row, const std::string& text) {
   sum.scale = parse_word(row, scale, kScales);
   sum.unit = next_word(text, &at);
   if (!next_word(text, &at).empty()) malformed(row.id, "a sum has a name, rows, a width, a scale and perhaps a unit");
+  const bool has_error = sum.rows != SumRows::view && (sum.scale == SumScale::weight || sum.scale == SumScale::unit);
+  if (!sum.unit.empty() && !has_error)
+    malformed(row.id, "sum '" + sum.name + "' has a unit, but no replicates of a weight or a share");
   return sum;
 }
 
 void parse_detector(const RawRow& raw, TableRow* row) {
   const std::string hooks = raw.hooks, sums = raw.sums;
   std::size_t at = 0;
-  for (std::string word = next_word(hooks, &at); !word.empty(); word = next_word(hooks, &at))
+  for (std::string word = next_word(hooks, &at); !word.empty(); word = next_word(hooks, &at)) {
+    const std::vector<std::string>& known = detector_hooks();
+    if (std::find(known.begin(), known.end(), word) == known.end()) malformed(row->id, "unknown hook '" + word + "'");
     row->hooks.push_back(word);
+  }
   for (at = 0; at < sums.size();) {
     const std::size_t end = std::min(sums.find(';', at), sums.size());
     row->sums.push_back(parse_sum(*row, sums.substr(at, end - at)));
@@ -238,6 +244,11 @@ bool key_accepts(const TableKey& key, double value, std::string* expected) {
   const bool above = key.low_included ? value >= key.low : value > key.low;
   const bool below = key.high_included ? value <= key.high : value < key.high;
   return above && below;
+}
+
+const std::vector<std::string>& detector_hooks() {
+  static const std::vector<std::string> hooks{"hit", "connect", "scatter", "escape", "end", "flush"};
+  return hooks;
 }
 
 const std::vector<TableRow>& table(const std::string& kind) {

@@ -62,6 +62,9 @@ struct TableRow {
 /// Rows in the order of the file; kernels know a row by its place. kind: "brdf", "shape", "detector", "walk".
 const std::vector<TableRow>& table(const std::string& kind);
 
+/// The moments at which a detector may look (kernels/stage/record.cl).
+const std::vector<std::string>& detector_hooks();
+
 /// The value of a sum's width where `value_of` knows its names. Throws Error(bug) for an unknown one.
 double sum_width(const TableSum& sum, const std::function<double(const std::string&)>& value_of);
 

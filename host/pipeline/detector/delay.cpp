@@ -153,6 +153,7 @@ void delay_record(const RoomResults& x, std::size_t v, std::size_t l, std::size_
     g.below_window_fraction = std::max(g.below_window_fraction, d.below_m2_per_sr / total);
     g.above_window_fraction = std::max(g.above_window_fraction, d.above_m2_per_sr / total);
   }
+  x.note(d.key, total != 0.0);
   x.out.delay.push_back(std::move(d));
 }
 

@@ -8,6 +8,7 @@
 #include "pipeline/detector/room.hpp"
 #include "pipeline/detector/rooms.hpp"
 #include "scene/spectrum.hpp"
+#include "scene/tables.hpp"
 
 namespace clray {
 namespace {
@@ -48,6 +49,10 @@ void add_band(const RoomResults& x, std::size_t v, std::size_t l, ImageResult* i
   }
 }
 
+bool any_light(const ImageResult& image) {
+  return std::any_of(image.radiance_per_sr.begin(), image.radiance_per_sr.end(), [](double r) { return r != 0.0; });
+}
+
 /// The picture of a view and lane so far; it holds all bands.
 std::vector<ImageResult>::iterator picture_of(const RoomResults& x, const ResultKey& key) {
   return std::find_if(x.out.image.begin(), x.out.image.end(),
@@ -62,6 +67,7 @@ void picture_results(const RoomResults& x) {
       auto found = picture_of(x, k);
       if (found == x.out.image.end()) found = x.out.image.insert(found, new_image(x, k, v));
       add_band(x, v, l, &*found);
+      x.note(k, any_light(*found));
     }
   }
 }
@@ -110,10 +116,12 @@ void caustics_results(const RoomResults& x) {
   for (std::size_t v = 0; v < x.plan.layout.shape.views; ++v) {
     for (std::size_t l = 0; l < x.plan.layout.shape.lanes; ++l) {
       ResultKey k = x.key(v, l, 0);
-      k.detector = spec.name.empty() ? spec.kind : spec.name;
+      k.detector = shown_name(spec);
       k.band.clear();
       const auto found = picture_of(x, k);
-      if (found != x.out.image.end()) add_caustics(x, v, l, &*found);
+      if (found == x.out.image.end()) continue;
+      add_caustics(x, v, l, &*found);
+      x.lit.note(table_row("detector", spec.kind), k, any_light(*found));
     }
   }
 }

@@ -80,6 +80,8 @@ void pressure_results(const RoomResults& x) {
   for (std::size_t v = 0; v < x.plan.layout.shape.views; ++v) {
     for (const LaneRecord& record : lane_records(x.plan.request.lanes)) {
       PressureResult p = pressure_record(x, v, record);
+      const VectorEstimate& force = p.coefficient_m2;
+      x.note(p.key, force.value != Vec3(0.0) || force.standard_error != Vec3(0.0));
       PressureResult* known = x.known(x.out.pressure, p.key, record);
       if (known != nullptr) {
         add_pressure(p, known);

@@ -33,7 +33,10 @@ struct RoomResults {
   const PassDetector& detector;
   const SumReader& read;
   Result& out;
+  LitRecords& lit;
 
+  /// Notes whether a record found light; a record that found none in any orientation is warned of.
+  void note(const ResultKey& key, bool found_light) const;
   const DetectorSpec& spec() const { return scene.detectors[static_cast<std::size_t>(detector.index)]; }
   /// The key of a record: observer c of the pass (names are empty where there is only one), view v and lane l.
   ResultKey key(std::size_t v, std::size_t l, std::size_t c) const;

@@ -41,6 +41,7 @@ void spectrometer_record(const RoomResults& x, std::size_t v, std::size_t l, std
   const Vec3& o = instant.observers[observer];
   const vec3 a = v3(instant.source.x, instant.source.y, instant.source.z), b = v3(o.x, o.y, o.z);
   s.phase_angle_rad = 2.0 * el_atan2(v3_length(v3_sub(a, b)), v3_length(v3_add(a, b)));
+  x.note(s.key, s.intensity_m2_per_sr.value != 0.0);
   x.out.spectrometer.push_back(std::move(s));
 }
 
