@@ -177,7 +177,7 @@ RandomScene draw_scene(std::uint64_t seed, int frames) {
     scene.materials.push_back(draw_material(draw, fmt::format("m{}", m), clray::bands_of(scene)));
   draw_components(draw, &out);
   draw_variants(draw, frame, &scene);
-  if (draw.chance(0.4)) draw_station(draw, &scene);
+  if (draw.chance(scene.source.kind == clray::Source::Kind::laser ? 0.9 : 0.3)) draw_station(draw, &scene);
   draw_observers(draw, frame, &scene);
   if (draw.chance(0.25)) draw_motion(draw, &scene);
   draw_detectors(draw, frame, &scene);

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "clray/session.hpp"
 #include "scene/spectrum.hpp"
 
 namespace clray_test {
@@ -98,6 +99,20 @@ class Flattener {
       records_[name].low = low;
       records_[name].high = high;
     }
+    photons(at, d, sharp);
+  }
+
+  /// Photons of a pulse that are expected in the window, at the range of the record's time and observer. They are the
+  /// total times a number where the window holds all of it.
+  void photons(const std::string& at, const clray::DelayResult& d, bool sharp) {
+    double sum = 0.0, binned = 0.0;
+    for (const double rate : d.photons_per_ns) sum += rate * d.bin_width_s * 1e9;
+    for (const double bin : d.bin_m2_per_sr) binned += bin;
+    const Estimate& total = d.intensity_m2_per_sr;
+    if (!(sum > 0.0 && total.value > 0.0)) return;
+    const double factor = sum / total.value;
+    add(at + "photons", "power", sum, factor * total.standard_error, area_ * factor,
+        total.relative_variance_of_variance, sharp && binned >= (1.0 - 1e-9) * total.value);
   }
 
   void spectrometer(const clray::SpectrometerResult& s) {
@@ -180,7 +195,9 @@ class Flattener {
 }  // namespace
 
 Records records_of(const Result& result, const Scene& scene, const Names& names) {
-  return Flattener(result, scene, names).flatten();
+  Result with_photons = result;
+  clray::expect_photons(scene, &with_photons);
+  return Flattener(with_photons, scene, names).flatten();
 }
 
 std::string orientation_name(const Result& result, std::size_t orientation, bool grid) {
