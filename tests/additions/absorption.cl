@@ -14,14 +14,14 @@ static u32 absorption_detector(u32 n) {
 }
 
 /// Place of a lane's first number among those that the work-item keeps.
-static u32 absorption_kept(u32 n, u32 sum, u32 lane) {
+static u32 absorption_kept(const Buffers* g, u32 n, u32 sum, u32 lane) {
   const u32 first = sum == CLRAY_ABSORPTION_LIT ? CLRAY_KEPT_absorption_lit : CLRAY_KEPT_absorption_absorbed;
-  return first + (n * CLRAY_LANES + lane) * CLRAY_COMPONENTS;
+  return first + (n * CLRAY_LANES + lane) * sum_width(g, absorption_detector(n), sum);
 }
 
 static void absorption_add(const Buffers* g, Tally* tally, u32 n, u32 sum, u32 lane, u32 component, f64 share) {
   const u64 at = sum_row(g, absorption_detector(n), sum, lane_row(g, tally, lane)) + component;
-  keep(g, tally->kept + absorption_kept(n, sum, lane) + component, at, share, g->pass->unit_scale, CLRAY_UNIT_LIMIT);
+  keep(g, tally->kept + absorption_kept(g, n, sum, lane) + component, at, share, g->pass->unit_scale, CLRAY_UNIT_LIMIT);
 }
 
 static void detector_absorption_hit(const Buffers* g, Tally* tally, u32 n, u32 bounce, const Surface* surface,
@@ -46,7 +46,8 @@ static void detector_absorption_flush(const Buffers* g, const Tally* tally, u32 
   for (u32 sum = 0; sum < 2u; ++sum) {
     for (u32 lane = 0; lane < CLRAY_LANES; ++lane) {
       const u64 at = sum_row(g, absorption_detector(n), sum, lane_row(g, tally, lane));
-      hand_over(g, at, tally->kept + absorption_kept(n, sum, lane), CLRAY_COMPONENTS);
+      const i64* own = tally->kept + absorption_kept(g, n, sum, lane);
+      hand_over(g, at, own, sum_width(g, absorption_detector(n), sum));
     }
   }
 }
