@@ -8,8 +8,10 @@
 #include <filesystem>
 #include <functional>
 #include <limits>
+#include <set>
 
 #include "clray/error.hpp"
+#include "clray/keys.hpp"
 #include "clray/session.hpp"
 #include "clray/trace.hpp"
 #include "support/scenes.hpp"
@@ -374,4 +376,21 @@ TEST_CASE("text that is not JSON does not enter the summary") {
   const auto write = [&] { clray::write_result(result, scene, folder.name + "/out", options); };
   CHECK(context_of("write_result", ErrorCode::usage, write) == "MoreFiles.mine");
   CHECK(std::filesystem::is_empty(folder.name));
+}
+
+TEST_CASE("results have the same bits under every walk through the BVH") {
+  // Nearest hits and shadows, over two bounces, on a tree of several levels.
+  Scene scene = scene_of(sphere_mesh(16, 8, 1.0), lambert(0.5));
+  add(scene, "box", {}, lambert(0.8)).transform.translate = {1.5, 0.3, 0.2};
+  scene.observers[0].monostatic = false;
+  scene.observers[0].direction = {1.0, 0.0, 0.0};
+  scene.trace.max_bounces = 2;
+  rays(scene, 12);
+  std::set<std::uint64_t> digests;
+  for (const std::string& walk : clray::table_rows("walk")) {
+    scene.trace.walk = walk;
+    digests.insert(run(scene).digest);
+  }
+  CHECK(clray::table_rows("walk").size() > 1);
+  CHECK(digests.size() == 1);
 }
