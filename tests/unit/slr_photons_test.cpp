@@ -37,7 +37,7 @@ struct Run {
     scene.motion.emplace();
     for (std::size_t i = 0; i < times.size(); ++i) {
       scene.motion->attitudes.push_back({times[i], {1, 0, 0, 0}});
-      result.orientations.push_back({times[i], Quaternion(1, 0, 0, 0), Vec3(0, 0, 1), {Vec3(0, 0, 1)}});
+      result.orientations.push_back({times[i], Quaternion(1, 0, 0, 0), Vec3(0, 0, 1), {Vec3(0, 0, 1)}, {}});
       add("", i, intensities.empty() ? 0.03 : intensities[i]);
     }
     scene.motion->start_s = times.front();
@@ -142,7 +142,7 @@ TEST_CASE("a session's mean cross-section is that over its shots, in the summary
 TEST_CASE("a session beside a grid of pressure directions fires the shots that it fires alone") {
   Run alone({0.0, 2.0, 4.0}), beside({0.0, 2.0, 4.0});
   for (std::size_t i = 3; i < 10; ++i) {
-    beside.result.orientations.push_back({0.0, Quaternion(1, 0, 0, 0), Vec3(1, 0, 0), {Vec3(1, 0, 0)}});
+    beside.result.orientations.push_back({0.0, Quaternion(1, 0, 0, 0), Vec3(1, 0, 0), {Vec3(1, 0, 0)}, {}});
     beside.result.pressure.emplace_back();
     beside.result.pressure.back().key.orientation = i;
   }
