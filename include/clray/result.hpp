@@ -49,10 +49,10 @@ struct ResultKey {
 struct Orientation {
   double time_s = 0.0;
   Quaternion body_to_space{1.0, 0.0, 0.0, 0.0};
-  Vec3 source{0.0, 0.0, 1.0};    ///< toward the source, body frame
-  std::vector<Vec3> observers;   ///< body frame, one per Scene::observers
-  std::vector<double> ranges_m;  ///< to each observer at that time; 0: not known
-  double light = 1.0;            ///< irradiance of the source, as a share of the one that the scene states
+  Vec3 source{0.0, 0.0, 1.0};      ///< toward the source, body frame
+  std::vector<Vec3> observers;     ///< body frame, one per Scene::observers
+  std::vector<double> ranges_m{};  ///< to each observer at that time; 0: not known
+  double light = 1.0;              ///< irradiance of the source, as a share of the one that the scene states
 };
 
 /// The delay camera: A(t), see docs/physics.md, section 1.

@@ -66,13 +66,12 @@ __kernel void probe(const __global ClrayView *views, const __global ClrayNode *n
 
 clray::ProgramOptions trace_options() {
   clray::ProgramOptions options;
-  for (const char* off :
-       {"SHADOW", "SCATTER", "DELTA", "ONE_SIDED", "PLANES", "INSTANCED", "WIDE", "STRATA", "ANALYTIC", "PIXELS"})
+  for (const char* off : {"SHADOW", "SCATTER", "DELTA", "ONE_SIDED", "PLANES", "INSTANCED", "WIDE", "STRATA",
+                          "ANALYTIC", "PIXELS", "MIRRORS_FIRST"})
     options.defines[std::string("CLRAY_") + off] = "0";
   for (const char* hook : {"hit", "connect", "scatter", "escape", "end", "flush"})
     options.defines[std::string("CLRAY_HOOK_") + hook + "(X)"] = "";
-  for (const char* on :
-       {"TRIANGLES", "CONNECT", "SOBOL", "LANES", "CONNECTIONS", "MATERIALS", "COMPONENTS", "MAX_BOUNCES", "KEPT"})
+  for (const char* on : {"TRIANGLES", "CONNECT", "SOBOL", "LANES", "CONNECTIONS", "KEPT"})
     options.defines[std::string("CLRAY_") + on] = "1";
   options.defines["CLRAY_STACK"] = "96";
   options.brdfs = {0};

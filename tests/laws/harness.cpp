@@ -176,7 +176,7 @@ int law_scenes() {
 }
 
 int law_frames() {
-  return law_scenes() > 100 ? 40 : 8;
+  return law_scenes() > 100 ? 40 : 6;
 }
 
 double LawHarness::trials() const {

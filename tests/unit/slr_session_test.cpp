@@ -59,7 +59,7 @@ struct Pass {
     result.seed = 42;
     for (int i = 0; i < orientations; ++i) {
       result.orientations.push_back(
-          {seconds * i / orientations, Quaternion(1, 0, 0, 0), Vec3(0, 0, 1), {Vec3(0, 0, 1)}});
+          {seconds * i / orientations, Quaternion(1, 0, 0, 0), Vec3(0, 0, 1), {Vec3(0, 0, 1)}, {}});
       DelayResult d;
       d.key.detector = "delay";
       d.key.orientation = static_cast<std::size_t>(i);
