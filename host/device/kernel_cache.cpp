@@ -13,6 +13,7 @@
 #include <iterator>
 
 #include "device/program.hpp"
+#include "text/hash.hpp"
 
 namespace clray {
 namespace {
@@ -30,11 +31,8 @@ std::string key_of(const OpenedDevice& opened, const std::string& what) {
   return key;
 }
 
-constexpr std::uint64_t kFnvBasis = 0xcbf29ce484222325u;
-
-std::uint64_t fnv1a(std::uint64_t state, const std::string& text) {
-  for (const unsigned char c : text) state = (state ^ c) * 0x100000001b3u;
-  return state;
+std::uint64_t hash_of(const std::string& text, std::uint64_t state = kFnvStart) {
+  return fnv1a(state, text.data(), text.size());
 }
 
 /// Of what passed: the file and its text.
@@ -45,10 +43,10 @@ struct Note {
 
 Note note_of(const OpenedDevice& opened, const std::string& what) {
   const std::string key = key_of(opened, what);
-  const std::uint64_t first = fnv1a(kFnvBasis, key), second = fnv1a(~kFnvBasis, key);
+  const std::uint64_t first = hash_of(key), second = hash_of(key, ~kFnvStart);
   const std::string hashes = fmt::format("clray {} passed {:016x} {:016x}\n", CLRAY_VERSION, first, second);
   return {fs::path(kernel_cache_folder()) / "clray" / fmt::format("{:016x}.passed", first),
-          hashes + fmt::format("{:016x}\n", fnv1a(kFnvBasis, hashes))};
+          hashes + fmt::format("{:016x}\n", hash_of(hashes))};
 }
 
 }  // namespace

@@ -148,10 +148,4 @@ double poisson_upper95(std::uint64_t hits) {
   return high;
 }
 
-std::uint64_t fnv1a(std::uint64_t state, const void* bytes, std::size_t count) {
-  const auto* p = static_cast<const unsigned char*>(bytes);
-  for (std::size_t k = 0; k < count; ++k) state = (state ^ p[k]) * 1099511628211ull;
-  return state;
-}
-
 }  // namespace clray

@@ -40,8 +40,4 @@ Estimate sum_of_parts(const Estimate& a, const Estimate& b);
 /// Upper 95 % bound of a Poisson mean of which `hits` were seen: 3.0 for none (−ln 0.05), else by inversion.
 double poisson_upper95(std::uint64_t hits);
 
-/// 64-bit FNV-1a over bytes, continued from `state`.
-std::uint64_t fnv1a(std::uint64_t state, const void* bytes, std::size_t count);
-constexpr std::uint64_t kFnvStart = 14695981039346656037ull;
-
 }  // namespace clray

@@ -10,6 +10,7 @@
 #include "pipeline/detector/sums.hpp"
 #include "pipeline/estimate.hpp"
 #include "scene/spectrum.hpp"
+#include "text/hash.hpp"
 
 namespace clray {
 namespace {

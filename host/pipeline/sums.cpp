@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "pipeline/estimate.hpp"
+#include "text/hash.hpp"
 
 namespace clray {
 

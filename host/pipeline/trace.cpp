@@ -18,6 +18,7 @@
 #include "pipeline/pass_runner.hpp"
 #include "pipeline/plan.hpp"
 #include "pipeline/warnings.hpp"
+#include "text/hash.hpp"
 #include "text/text.hpp"
 
 namespace clray {

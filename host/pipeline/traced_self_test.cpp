@@ -12,6 +12,7 @@
 #include "pipeline/estimate.hpp"
 #include "pipeline/host_pass.hpp"
 #include "pipeline/outcome.hpp"
+#include "text/hash.hpp"
 
 namespace clray {
 namespace {

@@ -11,8 +11,8 @@
 
 #include "device/buffers.hpp"
 #include "device/kernel_cache.hpp"
-#include "device/platforms.hpp"
 #include "device/program.hpp"
+#include "unit/device_support.hpp"
 
 using namespace clray;
 namespace fs = std::filesystem;
@@ -39,7 +39,7 @@ struct OwnCache {
 }  // namespace
 
 TEST_CASE("what is remembered serves the same device, driver and text, and no other") {
-  OpenedDevice opened = open_device(choose_devices(find_devices(), "cpu").front());
+  OpenedDevice opened = clray::test::opened_cpu();
   const OwnCache cache;
   const std::string what = "a test\nof this";
   CHECK_FALSE(remembered(opened, what));
@@ -51,7 +51,7 @@ TEST_CASE("what is remembered serves the same device, driver and text, and no ot
 }
 
 TEST_CASE("a damaged memory is none") {
-  OpenedDevice opened = open_device(choose_devices(find_devices(), "cpu").front());
+  OpenedDevice opened = clray::test::opened_cpu();
   const OwnCache cache;
   remember(opened, "a test");
   int files = 0;

@@ -11,23 +11,18 @@
 #include "device/platforms.hpp"
 #include "device/program.hpp"
 #include "device/self_test.hpp"
+#include "unit/device_support.hpp"
 
 using namespace clray;
+using clray::test::files_with_fault;
+using clray::test::opened_cpu;
 
 namespace {
-
-OpenedDevice opened_cpu() {
-  return open_device(choose_devices(find_devices(), "cpu").front());
-}
 
 /// What the self-test says when `text` in kernel file `path` reads `fault` instead.
 std::string refusal(const std::string& path, const std::string& text, const std::string& fault) {
   OpenedDevice opened = opened_cpu();
-  KernelFiles files = embedded_kernels();
-  std::string& file = files.at(path);
-  const std::size_t at = file.find(text);
-  REQUIRE(at != std::string::npos);
-  file.replace(at, text.size(), fault);
+  const KernelFiles files = files_with_fault(path, text, fault);
   try {
     run_self_test(opened, files);
   } catch (const Error& error) {

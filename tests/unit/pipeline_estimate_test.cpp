@@ -9,6 +9,7 @@
 
 #include "pipeline/estimate.hpp"
 #include "pipeline/outcome.hpp"
+#include "text/hash.hpp"
 
 using namespace clray;
 

@@ -14,14 +14,13 @@
 #include "pipeline/host_pass.hpp"
 #include "pipeline/traced_self_test.hpp"
 #include "scene/tables.hpp"
+#include "unit/device_support.hpp"
 
 using namespace clray;
+using clray::test::files_with_fault;
+using clray::test::opened_cpu;
 
 namespace {
-
-OpenedDevice opened_cpu() {
-  return open_device(choose_devices(find_devices(), "cpu").front());
-}
 
 /// Everything in the tables that a beam can meet.
 ProgramContent everything() {
@@ -50,11 +49,7 @@ ProgramContent simple(const std::string& shape, const std::string& model, const 
 std::string refusal(const ProgramContent& content, const std::string& path, const std::string& text,
                     const std::string& fault) {
   OpenedDevice opened = opened_cpu();
-  KernelFiles files = embedded_kernels();
-  std::string& file = files.at(path);
-  const std::size_t at = file.find(text);
-  REQUIRE(at != std::string::npos);
-  file.replace(at, text.size(), fault);
+  const KernelFiles files = files_with_fault(path, text, fault);
   try {
     run_traced_self_test(opened, built_in_scene(content).plan, true, files);
   } catch (const Error& error) {

@@ -7,20 +7,8 @@
 #include "unit/scene_files.hpp"
 
 using namespace clray;
+using clray::test::check_of;
 using clray::test::SceneFolder;
-
-namespace {
-
-std::string check_of(const Scene& scene) {
-  try {
-    check_scene(scene);
-  } catch (const Error& e) {
-    return e.code() == ErrorCode::input ? e.what() : "wrong code";
-  }
-  return "fine";
-}
-
-}  // namespace
 
 TEST_CASE("scene: --observer keeps what the scene says of its observers but for the direction") {
   const SceneFolder f;

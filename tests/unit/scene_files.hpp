@@ -13,6 +13,16 @@
 
 namespace clray::test {
 
+/// What check_scene() says of a scene filled by hand; "fine" if nothing.
+inline std::string check_of(const Scene& scene) {
+  try {
+    check_scene(scene);
+  } catch (const Error& e) {
+    return e.code() == ErrorCode::input ? e.what() : "wrong code";
+  }
+  return "fine";
+}
+
 class SceneFolder {
  public:
   SceneFolder() {

@@ -10,6 +10,7 @@
 #include "unit/scene_files.hpp"
 
 using namespace clray;
+using clray::test::check_of;
 using clray::test::SceneFolder;
 
 namespace {
@@ -22,15 +23,6 @@ std::string usage_of(const std::string& file, const SceneOptions& options) {
     load_scene(file, options);
   } catch (const Error& e) {
     return e.code() == ErrorCode::usage ? e.what() : "wrong code";
-  }
-  return "fine";
-}
-
-std::string check_of(const Scene& scene) {
-  try {
-    check_scene(scene);
-  } catch (const Error& e) {
-    return e.code() == ErrorCode::input ? e.what() : "wrong code";
   }
   return "fine";
 }
