@@ -55,10 +55,10 @@ std::shared_ptr<const BrdfTable> small_table() {
 
 /// Makes lanes differ: the first number of each surface falls from lane to lane, toward half its value beyond the last
 /// lane, if its key allows that.
-void part_lanes(std::uint32_t lanes, Surfaces* surfaces) {
+void part_lanes(std::uint32_t lanes, MaterialTable* rows) {
   for (std::uint32_t l = 1; l < lanes; ++l) {
-    for (std::uint32_t m = 0; m < surfaces->columns; ++m) {
-      ClrayMaterial& material = surfaces->materials[l * surfaces->columns + m];
+    for (std::uint32_t m = 0; m < rows->columns; ++m) {
+      ClrayMaterial& material = rows->rows[l * rows->columns + m];
       const std::vector<TableKey>& keys = table("brdf")[material.model].keys;
       const double value = material.p[0] * (1.0 - 0.5 * l / lanes);
       if (!keys.empty() && !keys[0].is_switch && !keys[0].is_whole && key_accepts(keys[0], value))
@@ -199,11 +199,11 @@ BuiltInScene built_in_scene(const ProgramContent& content) {
   // Only the first, which may be hinged, is asked for again; their number is that of the sums.
   scene.components.resize(content.components, scene.components.back());
   built.plan = plan_pass(scene, built.geometry, request_of(content, scene), false);
-  part_lanes(content.lanes, &built.plan.surfaces);
+  part_lanes(content.lanes, &built.plan.materials);
   // Any table of directional reflectance will do, and true ones would take most of the test's time.
-  for (ClrayMaterial& material : built.plan.surfaces.materials)
-    material.reflectance = static_cast<std::uint32_t>(built.plan.surfaces.tables.size());
-  for (const double number : {3.0, 0.0, 0.3, 1.0, 0.9, 0.7, 0.6}) built.plan.surfaces.tables.push_back(number);
+  for (ClrayMaterial& material : built.plan.materials.rows)
+    material.reflectance = static_cast<std::uint32_t>(built.plan.materials.tables.size());
+  for (const double number : {3.0, 0.0, 0.3, 1.0, 0.9, 0.7, 0.6}) built.plan.materials.tables.push_back(number);
   return built;
 }
 

@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "pipeline/geometry.hpp"
+#include "body/geometry.hpp"
 #include "pipeline/lit_records.hpp"
 #include "pipeline/plan.hpp"
 

@@ -2,7 +2,7 @@
 // See pass_buffers.hpp.
 #include "pipeline/pass_buffers.hpp"
 
-#include "pipeline/sobol.hpp"
+#include "beam/sobol.hpp"
 
 namespace clray {
 namespace {
@@ -28,8 +28,8 @@ PassBuffers::PassBuffers(const PassPlan& plan, const Geometry& geometry) {
   primitives = all_of(geometry.primitives);
   shapes = all_of(geometry.shapes);
   instances = all_of(plan.beams.instances);
-  materials = all_of(plan.surfaces.materials);
-  tables = all_of(plan.surfaces.tables);
+  materials = all_of(plan.materials.rows);
+  tables = all_of(plan.materials.tables);
   directions = all_of(own_directions_);
   detectors = all_of(own_detectors_);
   blocks = all_of(own_blocks_);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pipeline/illumination.hpp"
+#include "beam/illumination.hpp"
 #include "pipeline/plan.hpp"
 #include "scene/tables.hpp"
 
@@ -107,7 +107,7 @@ class Requests {
       PassRequest r = requests_[k];
       const Observer& observer = scene_.observers[static_cast<std::size_t>(r.observers.front())];
       if (scene_.trace.max_bounces == 1 && !(observer.acceptance_rad > 0.0)) continue;
-      if (!build_surfaces(scene_, r.lanes).delta) continue;
+      if (!material_table(scene_, r.lanes).delta) continue;
       r.pixels = false;
       r.mirrors = true;
       requests_.push_back(std::move(r));

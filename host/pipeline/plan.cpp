@@ -6,16 +6,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "beam/beams.hpp"
+#include "beam/strata.hpp"
 #include "clray/error.hpp"
-#include "pipeline/beam_strata.hpp"
-#include "pipeline/beams.hpp"
 #include "pipeline/detector/room.hpp"
 #include "scene/tables.hpp"
 
 namespace clray {
 namespace {
 
-PathTraits traits_of(const Scene& scene, const PassRequest& request, const Surfaces& surfaces) {
+PathTraits traits_of(const Scene& scene, const PassRequest& request, const MaterialTable& materials) {
   PathTraits t;
   t.max_bounces = scene.trace.max_bounces;
   t.components = static_cast<std::uint32_t>(scene.components.size());
@@ -26,7 +26,7 @@ PathTraits traits_of(const Scene& scene, const PassRequest& request, const Surfa
     t.connect = t.connect || row.connects;
     followed = followed || row.scatters;
   }
-  t.scatter = followed || (surfaces.delta && t.connect);
+  t.scatter = followed || (materials.delta && t.connect);
   return t;
 }
 
@@ -39,7 +39,7 @@ double first_bound(const PassPlan& plan) {
       const double* o = plan.beams.connections[v * plan.traits.connections + c].direction;
       const double x = s[0] + o[0], y = s[1] + o[1], z = s[2] + o[2];
       const double cos_half = 0.5 * std::sqrt(std::fma(x, x, std::fma(y, y, z * z)));
-      bound = std::max(bound, weight_bound(plan.surfaces, std::max(cos_half, 1e-6)));
+      bound = std::max(bound, weight_bound(plan.materials, std::max(cos_half, 1e-6)));
     }
   }
   return bound;
@@ -76,7 +76,7 @@ ClrayPass constants_of(const Scene& scene, const PassPlan& plan) {
   k.replicates = plan.request.replicates;
   k.views = static_cast<std::uint32_t>(plan.beams.views.size());
   k.max_bounces = static_cast<std::uint32_t>(plan.traits.max_bounces);
-  k.materials = plan.surfaces.columns;
+  k.materials = plan.materials.columns;
   k.width = plan.request.picture.width;
   k.height = plan.request.picture.height;
   return k;
@@ -150,13 +150,6 @@ std::optional<PathBins> path_bins_of(const std::vector<PassDetector>& detectors)
 
 }  // namespace
 
-double PathRange::low() const {
-  return *std::min_element(low_m.begin(), low_m.end());
-}
-double PathRange::high() const {
-  return *std::max_element(high_m.begin(), high_m.end());
-}
-
 const PassDetector* find_detector(const PassPlan& plan, const std::string& id) {
   for (const PassDetector& detector : plan.detectors) {
     if (table("detector")[static_cast<std::size_t>(detector.row)].id == id) return &detector;
@@ -176,16 +169,18 @@ double detector_value(const DetectorSpec& spec, const std::string& key) {
 PassPlan plan_pass(const Scene& scene, const Geometry& geometry, PassRequest request, bool reflectances) {
   PassPlan plan;
   plan.request = std::move(request);
-  plan.surfaces = build_surfaces(scene, plan.request.lanes);
-  plan.traits = traits_of(scene, plan.request, plan.surfaces);
+  plan.materials = material_table(scene, plan.request.lanes);
+  plan.traits = traits_of(scene, plan.request, plan.materials);
   if (reflectances && (plan.traits.scatter || !scene.trace.specialise))
-    plan.surfaces = build_surfaces(scene, plan.request.lanes, true);
+    plan.materials = material_table(scene, plan.request.lanes, true);
   plan.beams = build_beams(scene, geometry, plan.request);
   plan.paths = path_range(scene, geometry, plan.request, plan.beams);
   plan.scales = scales_of(scene, geometry, plan);
   plan.detectors = detectors_of(scene, geometry, plan);
   plan.layout = layout_of(plan, &plan.detectors);
-  plan.beams = stratified(std::move(plan.beams), scene, geometry, plan, path_bins_of(plan.detectors));
+  plan.beams = stratified(
+      std::move(plan.beams), scene, geometry, plan.request,
+      {plan.materials, plan.request.lanes.size(), plan.traits.connect, plan.paths, path_bins_of(plan.detectors)});
   plan.constants = constants_of(scene, plan);
   plan.program = specialise(scene, geometry, plan);
   return plan;

@@ -52,7 +52,7 @@ class Specialiser {
   }
 
   void tables() {
-    choose("brdf", plan_.surfaces.models, &out_.options.brdfs, "surface models");
+    choose("brdf", plan_.materials.models, &out_.options.brdfs, "surface models");
     choose("shape", geometry_.shape_rows, &out_.options.shapes, "shapes");
     out_.options.walk = table_index("walk", scene_.trace.walk);
     out_.kept.push_back("walk " + scene_.trace.walk + ": " + table_row("walk", scene_.trace.walk).meaning);
@@ -110,7 +110,7 @@ class Specialiser {
     const bool bistatic = shadows(), may_hide = t.connect && (bistatic || t.max_bounces > 1);
     const bool moving_parts = std::any_of(geometry_.parts.begin(), geometry_.parts.end(),
                                           [](const Part& part) { return part.hinged_component >= 0; });
-    const bool bounded = std::all_of(plan_.surfaces.models.begin(), plan_.surfaces.models.end(),
+    const bool bounded = std::all_of(plan_.materials.models.begin(), plan_.materials.models.end(),
                                      [](int row) { return table("brdf")[static_cast<std::size_t>(row)].bounded; });
     decide("CLRAY_SHADOW", may_hide && !geometry_.convex(), "shadow rays",
            bistatic ? "an observer is not at the source" : "later bounces are connected",
@@ -118,13 +118,13 @@ class Specialiser {
            : may_hide ? "the body is convex: what faces the observer is seen"
                       : "the observer is at the source: what is lit is seen");
     decide("CLRAY_SCATTER", t.scatter, "scattered directions",
-           t.max_bounces > 1      ? "several bounces"
-           : plan_.surfaces.delta ? "mirrors"
-                                  : "a detector follows the light on",
+           t.max_bounces > 1       ? "several bounces"
+           : plan_.materials.delta ? "mirrors"
+                                   : "a detector follows the light on",
            "one bounce, connected directly");
-    decide("CLRAY_DELTA", plan_.surfaces.delta, "ideal reflections", "a mirror is in the scene",
+    decide("CLRAY_DELTA", plan_.materials.delta, "ideal reflections", "a mirror is in the scene",
            "no mirror in the scene");
-    decide("CLRAY_ONE_SIDED", plan_.surfaces.one_sided, "black backs", "a material is one-sided",
+    decide("CLRAY_ONE_SIDED", plan_.materials.one_sided, "black backs", "a material is one-sided",
            "every material reflects from both sides");
     decide("CLRAY_PLANES", geometry_.shared_planes, "faces in one plane",
            "some overlap: the one that faces the ray is hit", "no faces overlap in one plane");

@@ -9,11 +9,11 @@
 #include <chrono>
 #include <cmath>
 
+#include "body/geometry.hpp"
 #include "clray/error.hpp"
 #include "clray/result.hpp"
 #include "pipeline/course.hpp"
 #include "pipeline/estimate.hpp"
-#include "pipeline/geometry.hpp"
 #include "pipeline/outcome.hpp"
 #include "pipeline/pass_runner.hpp"
 #include "pipeline/plan.hpp"

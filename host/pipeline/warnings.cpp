@@ -7,9 +7,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "body/portable_tables.hpp"
 #include "pipeline/detector/intensity.hpp"
 #include "pipeline/estimate.hpp"
-#include "pipeline/portable_tables.hpp"
 #include "scene/tables.hpp"
 
 namespace clray {
@@ -81,9 +81,9 @@ bool curved(const Geometry& geometry, double rays) {
 
 double bound_of_lane(const PassPlan& plan, std::size_t lane, double cos_half_phase) {
   double bound = 0.0;
-  const Surfaces& s = plan.surfaces;
-  for (std::size_t m = lane * s.columns; m < (lane + 1) * s.columns; ++m)
-    bound = std::max(bound, surface_bound(s.materials[m], s.tables, std::max(cos_half_phase, 1e-6)));
+  const MaterialTable& table = plan.materials;
+  for (std::size_t m = lane * table.columns; m < (lane + 1) * table.columns; ++m)
+    bound = std::max(bound, surface_bound(table.rows[m], table.tables, std::max(cos_half_phase, 1e-6)));
   return bound;
 }
 

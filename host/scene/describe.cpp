@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "clray/scene.hpp"
-#include "scene/keys.hpp"
+#include "scene/file/keys.hpp"
 #include "scene/motion.hpp"
 #include "scene/scene_parts.hpp"
 #include "scene/spectrum.hpp"

@@ -8,7 +8,7 @@
 
 #include "clray/error.hpp"
 #include "clray/keys.hpp"
-#include "scene/keys.hpp"
+#include "scene/file/keys.hpp"
 #include "scene/tables.hpp"
 #include "text/columns.hpp"
 #include "text/near_miss.hpp"

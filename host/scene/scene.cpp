@@ -10,8 +10,8 @@
 #include <glm/geometric.hpp>
 
 #include "clray/error.hpp"
-#include "scene/foreign_format.hpp"
-#include "scene/material.hpp"
+#include "scene/file/material.hpp"
+#include "scene/mesh/foreign_format.hpp"
 #include "scene/scene_parts.hpp"
 #include "scene/tables.hpp"
 #include "text/text.hpp"

@@ -9,13 +9,13 @@
 #include <set>
 
 #include "clray/error.hpp"
-#include "scene/keys.hpp"
-#include "scene/material.hpp"
+#include "scene/file/keys.hpp"
+#include "scene/file/material.hpp"
+#include "scene/file/value_checks.hpp"
 #include "scene/motion.hpp"
 #include "scene/scene_parts.hpp"
 #include "scene/spectrum.hpp"
 #include "scene/tables.hpp"
-#include "scene/value_checks.hpp"
 #include "shared/portable.h"
 
 namespace clray {

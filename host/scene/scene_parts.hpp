@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "clray/scene.hpp"
-#include "scene/toml_reader.hpp"
+#include "scene/file/toml_reader.hpp"
 
 namespace clray {
 

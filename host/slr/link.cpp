@@ -10,7 +10,7 @@
 #include "clray/constants.hpp"
 #include "clray/error.hpp"
 #include "clray/keys.hpp"
-#include "scene/keys.hpp"
+#include "scene/file/keys.hpp"
 #include "shared/elementary.h"
 #include "text/columns.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a point of the unit square lies in a stratified beam (host/pipeline/beam_strata.hpp): its first coordinate
+// Where a point of the unit square lies in a stratified beam (host/beam/strata.hpp): its first coordinate
 // chooses a strip and the place across it, the second a piece of that strip and the place along it. The map of a piece
 // onto its part of a cell keeps areas, so a ray's weight is constant within it.
 #ifndef CLRAY_STRATA_CL

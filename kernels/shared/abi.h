@@ -73,7 +73,7 @@ typedef struct ClrayView {
   f64 share_scale;
 } ClrayView;
 
-/// A stratum of the beam: a strip of a view, or a piece of a strip (host/pipeline/beam_strata.hpp). A uniform 32-bit
+/// A stratum of the beam: a strip of a view, or a piece of a strip (host/beam/strata.hpp). A uniform 32-bit
 /// number chooses the stratum whose `last` is the first that is not below it.
 typedef struct ClrayStratum {
   u32 last;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A node of the linear BVH, as the host writes it (host/bvh) and walks read it (kernels/walk). Nothing else knows what
+// A node of the linear BVH, as the host writes it (host/body) and walks read it (kernels/walk). Nothing else knows what
 // a child's number means.
 #ifndef CLRAY_BVH_NODE_H
 #define CLRAY_BVH_NODE_H

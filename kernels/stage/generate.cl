@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Stage 1, generate: a primary ray of a view. The rays of a beam fill the rectangle that bounds the body across the
-// direction to the source, or those strata of it that the body can be in (host/pipeline/beam_strata.hpp). The rays of a
+// direction to the source, or those strata of it that the body can be in (host/beam/strata.hpp). The rays of a
 // picture fill their pixel.
 #ifndef CLRAY_GENERATE_CL
 #define CLRAY_GENERATE_CL

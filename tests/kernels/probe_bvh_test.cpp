@@ -4,7 +4,7 @@
 // box in 113-bit arithmetic, where differences and products of fp64 numbers are exact.
 #include <doctest/doctest.h>
 
-#include "bvh/bvh.hpp"
+#include "body/bvh.hpp"
 #include "kernels/probes/probe.hpp"
 #include "shared/abi.h"
 

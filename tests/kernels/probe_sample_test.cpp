@@ -5,8 +5,8 @@
 
 #include <set>
 
+#include "beam/sobol.hpp"
 #include "kernels/probes/probe.hpp"
-#include "pipeline/sobol.hpp"
 #include "reference/sobol.hpp"
 #include "shared/abi.h"
 

@@ -5,8 +5,8 @@
 
 #include <map>
 
+#include "body/geometry.hpp"
 #include "kernels/probes/probe.hpp"
-#include "pipeline/geometry.hpp"
 #include "pipeline/plan.hpp"
 #include "support/scenes.hpp"
 

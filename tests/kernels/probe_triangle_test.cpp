@@ -6,7 +6,7 @@
 #include <array>
 #include <numeric>
 
-#include "bvh/bvh.hpp"
+#include "body/bvh.hpp"
 #include "kernels/probes/probe.hpp"
 #include "shared/abi.h"
 

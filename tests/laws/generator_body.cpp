@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "body/portable_tables.hpp"
 #include "laws/generator.hpp"
-#include "pipeline/portable_tables.hpp"
-#include "scene/material.hpp"
+#include "scene/file/material.hpp"
 #include "scene/scene_parts.hpp"
 #include "scene/tables.hpp"
 #include "shape/shape.h"

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <numeric>
 
+#include "body/geometry.hpp"
 #include "clray/error.hpp"
 #include "clray/trace.hpp"
-#include "pipeline/geometry.hpp"
 #include "pipeline/pass_runner.hpp"
 #include "pipeline/plan.hpp"
 #include "reference/sobol.hpp"

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <string>
 
+#include "body/reflectance.hpp"
 #include "pipeline/course.hpp"
-#include "pipeline/reflectance.hpp"
 #include "pipeline/sums.hpp"
 
 using namespace clray;

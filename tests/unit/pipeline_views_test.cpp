@@ -5,9 +5,9 @@
 
 #include <algorithm>
 
-#include "pipeline/beams.hpp"
-#include "pipeline/geometry.hpp"
-#include "pipeline/illumination.hpp"
+#include "beam/beams.hpp"
+#include "beam/illumination.hpp"
+#include "body/geometry.hpp"
 #include "pipeline/plan.hpp"
 #include "unit/pipeline_support.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Columns of tables: found by name in any order and unit, or refused in words that name what was found and expected.
-#include "scene/scene_csv.hpp"
+#include "scene/file/scene_csv.hpp"
 
 #include <doctest/doctest.h>
 

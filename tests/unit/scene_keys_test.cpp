@@ -9,8 +9,8 @@
 #include <sstream>
 
 #include "clray/keys.hpp"
-#include "scene/key_member.hpp"
-#include "scene/keys.hpp"
+#include "scene/file/key_member.hpp"
+#include "scene/file/keys.hpp"
 #include "unit/scene_files.hpp"
 
 using namespace clray;

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "scene/scene_csv.hpp"
+#include "scene/file/scene_csv.hpp"
 #include "scene/spectrum.hpp"
 #include "unit/scene_files.hpp"
 

@@ -7,7 +7,7 @@
 #include "clray/constants.hpp"
 #include "clray/error.hpp"
 #include "clray/session.hpp"
-#include "scene/keys.hpp"
+#include "scene/file/keys.hpp"
 #include "slr/link.hpp"
 #include "slr/pulse.hpp"
 

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "beam/strata.hpp"
 #include "pipeline/outcome.hpp"
 #include "pipeline/plan.hpp"
 #include "pipeline/sum_reader.hpp"

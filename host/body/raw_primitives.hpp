@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// Primitives before they have their places in the tree, and which of their flat faces share a plane. Part frames,
+// metres.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "body/shared_planes.hpp"
+
+namespace clray {
+
+/// A triangle with its nine coordinates, or an analytic shape with its record (abi.h).
+struct RawPrimitive {
+  std::uint32_t data = 0;  ///< offset in the numbers
+  std::uint32_t size = 0;  ///< how many: 9 of a triangle, more of a shape
+  std::uint32_t shape = 0, material = 0, component = 0, part = 0;
+  std::uint32_t planes = CLRAY_NO_PLANES;  ///< offset of its planes' records in a list of them
+};
+
+/// Parts that a primitive's list of planes has room for.
+std::uint32_t parts_of(const RawPrimitive& raw);
+
+/// Faces of primitives in canonical order that overlap in one plane.
+SharedPlanes shared_planes_of(const std::vector<RawPrimitive>& primitives, const std::vector<double>& numbers);
+
+}  // namespace clray

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+// MTL reader: Kd, Ks, Ns and illum of each newmtl, and whether it is transparent, which no surface here is; textures
+// and everything else are left out. Source of the keys: Wavefront, Advanced Visualizer manual, appendix B1 (MTL 4.2).
+#include "scene/mesh/mtl_reader.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <unordered_map>
+
+#include "scene/file/material.hpp"
+#include "scene/mesh/mesh_readers.hpp"
+#include "scene/mesh/mesh_text.hpp"
+
+namespace clray {
+
+namespace {
+
+constexpr double kMostNs = 1.0e6;
+
+struct MtlEntry {
+  std::string name;
+  std::uint64_t line = 0;
+  std::optional<double> kd, ks;  // means over the colours
+  double ns = 0.0;
+  std::optional<std::int64_t> illum;
+  std::optional<double> d, tr;  // opacity, transparency
+};
+
+class MtlReader {
+ public:
+  MtlReader(const std::string& path, const std::string& content) : path_(path), text_(content, path) {}
+
+  std::vector<Material> read(std::vector<std::string>& warnings) {
+    while (text_.next_filled_line()) {
+      const std::uint64_t line = text_.line();
+      const std::string_view key = text_.word();
+      if (key == "newmtl") {
+        begin(text_.rest(), line);
+      } else if (current_) {
+        statement(key, *current_);
+      } else if (key == "Kd" || key == "Ks" || key == "Ns" || key == "illum") {
+        early_.add(line, key);
+      }
+      text_.next_line();
+    }
+    finish();
+    std::vector<Material> materials;
+    for (const MtlEntry& entry : entries_) materials.push_back(to_material(entry));
+    warn(warnings);
+    return materials;
+  }
+
+ private:
+  void begin(std::string_view name, std::uint64_t line) {
+    finish();
+    current_ = MtlEntry();
+    current_->name = name;
+    current_->line = line;
+    if (without_comment(name).empty()) {
+      current_->name = kUnnamedMaterial;
+      unnamed_.add(line);
+    }
+  }
+
+  // The entry takes the place of an earlier one of the same name, or a new place.
+  void finish() {
+    if (!current_) return;
+    const auto [place, inserted] = place_of_.emplace(current_->name, entries_.size());
+    if (inserted) {
+      entries_.push_back(std::move(*current_));
+    } else {
+      twice_.add(current_->line, current_->name);
+      entries_[place->second] = std::move(*current_);
+    }
+    current_.reset();
+  }
+
+  void statement(std::string_view key, MtlEntry& entry) {
+    if (key == "Kd" || key == "Ks") {
+      colour(key, entry, key == "Kd" ? entry.kd : entry.ks);
+    } else if (key == "Ns") {
+      const std::uint64_t line = text_.line();
+      const double value = text_.number("Ns");
+      entry.ns = std::min(std::max(value, 0.0), kMostNs);
+      if (entry.ns != value) outside_.add(line, "Ns of " + quote_word(entry.name) + " is outside [0,1e6]");
+    } else if (key == "illum") {
+      const std::uint64_t line = text_.line();
+      entry.illum = text_.integer("illum", INT32_MIN, INT32_MAX);
+      if (*entry.illum >= 0 && *entry.illum <= 10) return;
+      strange_illum_.add(line, entry.name);
+      entry.illum.reset();
+    } else if (key == "d" || key == "Tr") {
+      std::string_view last;
+      while (text_.more_on_line()) last = text_.word();  // d may begin with -halo
+      double value = 0.0;
+      if (parse_number(last, value).empty()) (key == "d" ? entry.d : entry.tr) = value;
+    }
+  }
+
+  // The mean of a colour. Spectral files and CIE values are refused, since they give no share of light per colour.
+  void colour(std::string_view key, const MtlEntry& entry, std::optional<double>& mean) {
+    const std::string what(key);
+    const std::uint64_t line = text_.line();
+    TextCursor ahead = text_;
+    const std::string_view first = ahead.word();
+    if (first == "spectral" || first == "xyz") {
+      spectral_.add(line, what);
+      return;
+    }
+    double sum = 0.0;
+    int count = 0;
+    bool outside = false;
+    for (; text_.more_on_line() && count < 3; ++count) {
+      const double value = text_.number(what.c_str());
+      const double share = std::min(std::max(value, 0.0), 1.0);
+      outside = outside || share != value;
+      sum += share;
+    }
+    // MTL: green and blue default to red where only red is given.
+    if (count != 1 && count != 3) text_.fail(what + " with one or three values was expected");
+    if (outside) outside_.add(line, what + " of " + quote_word(entry.name) + " is outside [0,1]");
+    mean = sum / count;
+  }
+
+  Material to_material(const MtlEntry& entry) {
+    if (entry.d ? *entry.d < 1.0 : entry.tr && *entry.tr > 0.0) transparent_.add(entry.line, entry.name);
+    Material material;
+    material.name = entry.name;
+    const double kd = entry.kd.value_or(0.0), ks = entry.ks.value_or(0.0);
+    if (ks > 0.0 && entry.illum.value_or(0) >= 2) {
+      material.model = "ashikhmin-shirley";
+      material.parameters["rho"] = std::min(kd + ks, 1.0);
+      material.parameters["f0"] = material.parameters["rho"];
+      material.parameters["d"] = kd / (kd + ks);
+      material.parameters["n"] = entry.ns;
+      if (kd + ks > 1.0) bright_.add(entry.line, entry.name);
+      return material;
+    }
+    if (!entry.kd) {
+      no_kd_.add(entry.line, entry.name);
+      material = default_material();
+      material.name = entry.name;
+      return material;
+    }
+    if (ks > 0.0 && !entry.illum) no_illum_.add(entry.line, entry.name);
+    material.model = "lambert";
+    material.parameters["rho"] = kd;
+    return material;
+  }
+
+  void warn(std::vector<std::string>& warnings) const {
+    const auto material = [](const Tally& tally) { return "material " + quote_word(tally.first); };
+    early_.warn(path_, quote_word(early_.first) + " before any newmtl is left out", warnings);
+    unnamed_.warn(path_, "newmtl without a name", warnings);
+    twice_.warn(path_, material(twice_) + " is defined again; the last definition is used", warnings);
+    outside_.warn(path_, outside_.first + " and taken to its nearer end", warnings);
+    strange_illum_.warn(path_, "illum of " + material(strange_illum_) + " is none of 0 to 10 and left out", warnings);
+    spectral_.warn(path_, spectral_.first + " as a spectral file or CIE XYZ is left out", warnings);
+    no_illum_.warn(path_, material(no_illum_) + " has Ks but no illum >= 2: taken as Lambert with Kd", warnings);
+    no_kd_.warn(path_, material(no_kd_) + " has no Kd: taken as Lambert with rho 0.5", warnings);
+    bright_.warn(path_, "Kd + Ks of " + material(bright_) + " are above 1 and taken as 1", warnings);
+    transparent_.warn(path_, material(transparent_) + " is transparent (d or Tr): taken as opaque", warnings);
+    if (entries_.empty()) warnings.push_back(path_ + ": the material library defines no material");
+  }
+
+  const std::string& path_;
+  TextCursor text_;
+  std::optional<MtlEntry> current_;
+  std::vector<MtlEntry> entries_;
+  std::unordered_map<std::string, std::size_t> place_of_;
+  Tally early_, unnamed_, twice_, outside_, strange_illum_, spectral_, no_illum_, no_kd_, bright_, transparent_;
+};
+
+}  // namespace
+
+std::vector<Material> read_mtl(const std::string& path, std::vector<std::string>& warnings) {
+  const std::string content = read_mesh_file(path);
+  return MtlReader(path, content).read(warnings);
+}
+
+}  // namespace clray

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: Apache-2.0
+// Libraries and slots of an OBJ file; see obj_materials.hpp. A name goes to the end of its line, so a '#' may belong
+// to it ("Material #25") or begin a comment: the names of the libraries decide which.
+#include "scene/mesh/obj_materials.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <initializer_list>
+
+#include "scene/mesh/mesh_text.hpp"
+#include "scene/mesh/mtl_reader.hpp"
+
+namespace clray {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::size_t kMostWarnings = 16;
+
+/// Finds the material that a usemtl means, and says what each material is called.
+class NameTable {
+ public:
+  /// `whole`: the places of the materials by their names as written.
+  NameTable(const std::vector<Material>& materials, const std::unordered_map<std::string, std::size_t>& whole)
+      : materials_(materials), whole_(whole) {
+    for (std::size_t i = 0; i < materials.size(); ++i) {
+      const std::string& name = materials[i].name;
+      if (name.find('#') == name.npos) continue;
+      add(cut_, without_comment(name), i);
+      add(loose_, without_comment(name, true), i);
+    }
+  }
+
+  /// Index of the material that `name` means, or -1. Two names are never compared after both were cut at a '#':
+  /// "Material #27" is not "Material #25".
+  int find(const std::string& name) const {
+    int found = look_up({&whole_, &cut_}, name);
+    if (found < 0 && name.find('#') != name.npos) {
+      found = look_up({&whole_, &cut_}, without_comment(name));
+      if (found < 0) found = look_up({&whole_, &cut_}, without_comment(name, true));
+    }
+    if (found < 0) found = look_up({&loose_}, name);
+    if (found < 0) found = look_up({&loose_}, without_comment(name));
+    return found;
+  }
+
+  /// The name of material `i`, without its comment if it is then still unlike the others.
+  std::string name(std::size_t i) const {
+    const std::string plain = without_comment(materials_[i].name);
+    return look_up({&whole_, &cut_}, plain) == static_cast<int>(i) ? plain : materials_[i].name;
+  }
+
+ private:
+  using Map = std::unordered_map<std::string, std::size_t>;
+  static constexpr std::size_t kSeveral = ~std::size_t{0};
+
+  void add(Map& map, const std::string& name, std::size_t i) {
+    if (whole_.count(name) > 0) return;
+    const auto [entry, inserted] = map.emplace(name, i);
+    if (!inserted && entry->second != i) entry->second = kSeveral;
+  }
+
+  static int look_up(std::initializer_list<const Map*> maps, const std::string& name) {
+    for (const Map* map : maps) {
+      const auto found = map->find(name);
+      if (found != map->end() && found->second != kSeveral) return static_cast<int>(found->second);
+    }
+    return -1;
+  }
+
+  const std::vector<Material>& materials_;
+  const Map& whole_;
+  Map cut_, loose_;  // names cut at a '#' before a blank, and at any '#'
+};
+
+std::string base_name(const std::string& name) {
+  const std::size_t slash = name.find_last_of("/\\");
+  return slash == name.npos ? name : name.substr(slash + 1);
+}
+
+// The path of `name` beside the OBJ file, with links followed; empty if it is no file inside the folder.
+fs::path file_inside(const fs::path& root, const std::string& name) {
+  std::error_code error;
+  if (name.empty() || name.find('\0') != name.npos) return {};
+  const fs::path file = fs::weakly_canonical(root / name, error);
+  if (error) return {};
+  const fs::path inside = file.lexically_relative(root);
+  if (inside.empty() || *inside.begin() == "..") return {};
+  return fs::is_regular_file(file, error) ? inside : fs::path();
+}
+
+}  // namespace
+
+void ObjMaterials::libraries(std::string_view names, std::uint64_t line, std::vector<std::string>& warnings) {
+  any_library_ = true;
+  const std::string whole(names), plain = without_comment(names);
+  // A name may hold spaces, and a line may hold several names: the whole line is tried first.
+  if (library(whole, line, warnings) || library(plain, line, warnings)) return;
+  std::vector<std::string> missing;
+  std::size_t words = 0;
+  TextCursor text(plain, path_);
+  for (; text.more_on_line(); ++words) {
+    const std::string word(text.word());
+    if (!library(word, line, warnings)) missing.push_back(word);
+  }
+  if (missing.size() == words) missing = {plain};
+  for (const std::string& name : missing) {
+    Tally gone;
+    gone.add(line);
+    gone.warn(
+        path_,
+        name.empty() ? "mtllib without a name is left out" : "material library " + quote_word(name) + " is missing",
+        warnings);
+  }
+}
+
+// Reads a library inside the folder of the OBJ file. A mesh that came from elsewhere must not make us open other files,
+// so of a path that leads outside (absolute, of another system, with "..") only the last part is tried. Returns false
+// if there is no such file.
+bool ObjMaterials::library(const std::string& name, std::uint64_t line, std::vector<std::string>& warnings) {
+  const fs::path folder = fs::path(path_).parent_path();
+  std::error_code error;
+  const fs::path root = fs::canonical(folder.empty() ? fs::path(".") : folder, error);
+  if (error) fail_input(path_, line, "the folder of the OBJ file cannot be resolved: " + error.message());
+  std::string slashes = name;
+  std::replace(slashes.begin(), slashes.end(), '\\', '/');
+  fs::path inside = file_inside(root, name);
+  if (inside.empty()) inside = file_inside(root, slashes);
+  const bool fallen_back = inside.empty();
+  if (fallen_back) inside = file_inside(root, base_name(name));
+  if (inside.empty()) return false;
+  if (!read_.insert(inside.string()).second) return true;
+  if (fallen_back) {
+    Tally elsewhere;
+    elsewhere.add(line);
+    elsewhere.warn(path_,
+                   "material library " + quote_word(name) + " is not inside the folder of the OBJ file: " +
+                       quote_word(inside.string()) + " beside it is read instead",
+                   warnings);
+  }
+  for (Material& material : read_mtl((folder / inside).string(), warnings)) add(std::move(material), line);
+  return true;
+}
+
+void ObjMaterials::add(Material material, std::uint64_t line) {
+  const auto [entry, inserted] = material_of_.emplace(material.name, materials_.size());
+  if (inserted) {
+    materials_.push_back(std::move(material));
+    return;
+  }
+  again_.add(line, material.name);
+  materials_[entry->second] = std::move(material);
+}
+
+std::uint32_t ObjMaterials::slot(const std::string& name, std::uint64_t line) {
+  const auto [entry, inserted] = slot_of_.emplace(name, static_cast<std::uint32_t>(slots_.size()));
+  if (inserted) slots_.push_back({name, line, false});
+  return entry->second;
+}
+
+void ObjMaterials::use(std::string_view name, std::uint64_t line) {
+  const std::string whole(name);
+  current_ = static_cast<int>(slot(without_comment(name).empty() ? kUnnamedMaterial : whole, line));
+}
+
+std::uint32_t ObjMaterials::face_slot() {
+  if (current_ < 0) current_ = static_cast<int>(slot("", 0));
+  slots_[static_cast<std::size_t>(current_)].used = true;
+  return static_cast<std::uint32_t>(current_);
+}
+
+void ObjMaterials::finish(PolygonSoup& soup) {
+  again_.warn(path_, "material " + quote_word(again_.first) + " comes again in a later library, which is used",
+              soup.warnings);
+  const NameTable names(materials_, material_of_);
+  constexpr std::uint32_t kNone = ~0u;
+  std::vector<std::uint32_t> place(slots_.size()), place_of_material(materials_.size(), kNone);
+  std::unordered_map<std::string, std::uint32_t> place_of_other;
+  std::vector<Slot> unknown;
+  for (std::size_t i = 0; i < slots_.size(); ++i) {
+    if (!slots_[i].used) continue;
+    const auto next = static_cast<std::uint32_t>(soup.slots.size());
+    const int material = slots_[i].name.empty() ? -1 : names.find(slots_[i].name);
+    if (material >= 0) {
+      std::uint32_t& there = place_of_material[static_cast<std::size_t>(material)];
+      if (there == kNone) {
+        there = next;
+        soup.slots.push_back(names.name(static_cast<std::size_t>(material)));
+      }
+      place[i] = there;
+      continue;
+    }
+    const std::string name = without_comment(slots_[i].name);
+    const auto [entry, inserted] = place_of_other.emplace(name, next);
+    place[i] = entry->second;
+    if (!inserted) continue;
+    soup.slots.push_back(name);
+    if (!name.empty()) unknown.push_back({name, slots_[i].line, true});
+  }
+  for (std::uint32_t& s : soup.face_slot) s = place[s];
+  warn_of_unknown(unknown, soup.warnings);
+  std::vector<std::string> called;  // all of them before any changes, since the table looks at names as written
+  for (std::size_t i = 0; i < materials_.size(); ++i) called.push_back(names.name(i));
+  for (std::size_t i = 0; i < materials_.size(); ++i) materials_[i].name = std::move(called[i]);
+  soup.file_materials = std::move(materials_);
+}
+
+void ObjMaterials::warn_of_unknown(const std::vector<Slot>& unknown, std::vector<std::string>& warnings) const {
+  // If no library could be read at all, a warning has already said so.
+  const bool no_library = materials_.empty() && any_library_;
+  std::size_t count = 0;
+  Tally rest;
+  for (const Slot& slot : unknown) {
+    if (no_library && slot.name != kUnnamedMaterial) continue;
+    const std::string text = slot.name == kUnnamedMaterial
+                                 ? std::string("usemtl without a name")
+                                 : "usemtl " + quote_word(slot.name) + " is in no material library";
+    if (++count <= kMostWarnings) {
+      warnings.push_back(path_ + ":" + std::to_string(slot.line) + ": " + text);
+    } else {
+      rest.add(slot.line);
+    }
+  }
+  rest.warn(path_, "more usemtl are in no material library", warnings);
+}
+
+}  // namespace clray
