@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # Writes ${PROJECT_BINARY_DIR}/generated/<table>_all.inc for the host, from the rows of the .def files: the row numbers
 # CLRAY_<TABLE>_<id>, the #include lines of the rows' files, and CLRAY_<TABLE>S(X) with X(id) for each row. So a new
-# row is one kernel file and one line, here as on the device (device/program.hpp). The row `triangle` is handled apart
-# from the analytic shapes and is not in CLRAY_SHAPES.
+# row is one kernel file and one line, here as on the device (device/program.hpp). Shapes with the trait `faces` are not
+# in CLRAY_SHAPES: walks test them by themselves.
 set(clray_text "\"([^\"]*)\"")
 
 function(clray_rows table macro rows)
@@ -32,7 +32,7 @@ function(clray_generate_table table macro)
     string(APPEND numbers "#define CLRAY_${macro}_${id} ${row}u\n")
     math(EXPR row "${row} + 1")
     string(APPEND includes "#include \"${table}/${id}.cl\"\n")
-    if(NOT id STREQUAL "triangle")
+    if(NOT line MATCHES "\\(${id}, ${clray_text}, \"[^\"]*faces")
       string(APPEND list " X(${id})")
     endif()
   endforeach()

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "body/portable_tables.hpp"
+#include "scene/tables.hpp"
 
 namespace clray {
 namespace {
@@ -30,12 +31,13 @@ class Rasteriser {
   }
 
   std::vector<BeamCell> cells() {
+    const std::vector<TableRow>& shapes = table("shape");
     for (std::size_t k = 0; k < geometry_.primitives.size(); ++k) {
       const ClrayPrimitive& primitive = geometry_.primitives[k];
       const double* data = geometry_.shapes.data() + primitive.data;
       const RigidMotion& motion = motions_[geometry_.part_of_component[primitive.component]];
       primitive_ = static_cast<std::uint32_t>(k);
-      if (static_cast<int>(primitive.shape) == geometry_.mesh_row) {
+      if (shapes[primitive.shape].faces) {
         triangle(corner(motion, data), corner(motion, data + 3), corner(motion, data + 6));
       } else {
         shape(primitive, motion, data);

@@ -97,7 +97,7 @@ class Packer {
       points[i] = to_body(component.transform, rotation, mesh.vertices[i]);
     RawPrimitive raw;
     raw.size = 9;
-    raw.shape = static_cast<std::uint32_t>(table_index("shape", "mesh"));
+    raw.shape = static_cast<std::uint32_t>(table_index("shape", component.shape));
     raw.component = index;
     raw.part = g_.part_of_component[index];
     std::vector<std::uint8_t> used(points.size(), 0);
@@ -243,7 +243,6 @@ class Packer {
   }
 
   void build_trees() {
-    g_.mesh_row = table_index("shape", "mesh");
     std::vector<bool> used(table("shape").size(), false);
     for (std::uint32_t p = 0; p < g_.parts.size(); ++p) {
       std::vector<std::uint32_t> members;
@@ -276,7 +275,7 @@ class Packer {
     primitive.id = id;
     primitive.component = raw.component;
     const double* d = numbers_.data() + raw.data;
-    if (static_cast<int>(raw.shape) == g_.mesh_row) {
+    if (table("shape")[raw.shape].faces) {
       primitive.flags = CLRAY_PRIMITIVE_PLANE;
     } else {
       if (shape_traits_of(static_cast<int>(raw.shape), d + CLRAY_SHAPE_KEYS) & CLRAY_SHAPE_PLANE)

@@ -39,7 +39,6 @@ struct Geometry {
   std::vector<ClrayNode> nodes;
   std::vector<Part> parts;      ///< static part first, if there is one
   std::vector<int> shape_rows;  ///< rows of shape.def in use, ascending
-  int mesh_row = 0;             ///< of triangles
   std::vector<std::uint32_t> part_of_component;
   std::uint32_t stack_needed = 1;  ///< of the deepest tree
   bool single = false;             ///< one component, and no faces in one place

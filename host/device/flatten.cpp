@@ -18,8 +18,6 @@ struct Table {
   std::vector<int> (*used)(const ProgramOptions&);
 };
 
-constexpr const char* kNotDispatched = "triangle";  // meshes have a traversal of their own
-
 const Table kTables[] = {
     {"brdf", "BRDF", [](const ProgramOptions& options) { return options.brdfs; }},
     {"shape", "SHAPE", [](const ProgramOptions& options) { return options.shapes; }},
@@ -32,6 +30,25 @@ std::string once_macro(const std::string& path) {
     if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
   }
   return name;
+}
+
+/// The ids of a table's rows that match, in order.
+std::vector<std::string> matching_ids(const std::string& table, const KernelFiles& files, const std::regex& row) {
+  const auto file = files.find(fmt::format("{0}/{0}.def", table));
+  if (file == files.end()) return {};
+  std::vector<std::string> ids;
+  std::istringstream lines(file->second);
+  for (std::string line; std::getline(lines, line);) {
+    std::smatch match;
+    if (line.compare(0, 2, "//") != 0 && std::regex_match(line, match, row)) ids.push_back(match[1]);
+  }
+  return ids;
+}
+
+/// The ids of shapes that are made of faces: walks test those by themselves.
+std::vector<std::string> undispatched_ids(const std::string& table, const KernelFiles& files) {
+  static const std::regex row(R"(^\s*SHAPE\(\s*(\w+)\s*,\s*"[^"]*"\s*,\s*"[^"]*\bfaces\b.*)");
+  return matching_ids(table, files, row);
 }
 
 /// The ids of the used rows, in the table's order.
@@ -133,7 +150,7 @@ class Flattener {
   }
 
   void add_table(const Table& table, const std::string& where, bool conditional) {
-    const auto ids = table_row_ids(table.name, files_);
+    const auto ids = table_row_ids(table.name, files_), undispatched = undispatched_ids(table.name, files_);
     const auto used = used_ids(table, options_, files_);
     const std::string name = fmt::format("generated/{}_all.inc", table.name);
     out_ += fmt::format("#line 1 \"{}\"\n", name);
@@ -141,8 +158,10 @@ class Flattener {
       out_ += fmt::format("#define CLRAY_{}_{} {}\n", table.prefix, ids[row], row);
     }
     for (const auto& id : used) add_include(fmt::format("{}/{}.cl", table.name, id), where, conditional);
-    std::vector<std::string> dispatched = used;
-    dispatched.erase(std::remove(dispatched.begin(), dispatched.end(), kNotDispatched), dispatched.end());
+    std::vector<std::string> dispatched;
+    for (const auto& id : used) {
+      if (std::find(undispatched.begin(), undispatched.end(), id) == undispatched.end()) dispatched.push_back(id);
+    }
     out_ += fmt::format("#line {} \"{}\"\n#define CLRAY_{}S(X)", ids.size() + 1, name, table.prefix);
     for (const auto& id : dispatched) out_ += fmt::format(" X({})", id);
     out_ += "\n";
@@ -159,17 +178,8 @@ class Flattener {
 }  // namespace
 
 std::vector<std::string> table_row_ids(const std::string& table, const KernelFiles& files) {
-  const std::string path = fmt::format("{0}/{0}.def", table);
-  const auto file = files.find(path);
-  if (file == files.end()) return {};
   static const std::regex row(R"(^\s*(?:BRDF|SHAPE|DETECTOR|WALK)\(\s*(\w+)\s*,.*)");
-  std::vector<std::string> ids;
-  std::istringstream lines(file->second);
-  for (std::string line; std::getline(lines, line);) {
-    std::smatch match;
-    if (line.compare(0, 2, "//") != 0 && std::regex_match(line, match, row)) ids.push_back(match[1]);
-  }
-  return ids;
+  return matching_ids(table, files, row);
 }
 
 std::string flatten(const std::string& entry, const ProgramOptions& options, const KernelFiles& files) {

@@ -30,7 +30,7 @@ std::vector<std::string> table_row_ids(const std::string& table, const KernelFil
 /// One source for `entry` (a path under kernels/, such as "trace.cl"). Every file is taken once. Beside the files,
 /// `#include "generated/brdf_all.inc"` (and shape_, detector_, walk_) gives the row numbers CLRAY_BRDF_<id> of all
 /// rows, the files of the used rows, CLRAY_BRDFS(X) with X(id) for each used row, and CLRAY_BRDF_ONLY if there is just
-/// one. The row `triangle` is not in CLRAY_SHAPES.
+/// one. Shapes with the trait `faces` are not in CLRAY_SHAPES.
 /// Throws Error(bug) with file:line for a missing or cyclic include.
 std::string flatten(const std::string& entry, const ProgramOptions& options);
 

@@ -137,10 +137,11 @@ class Specialiser {
       out_.kept.push_back("strata of the beam: the Sobol sampler, spread over the body's silhouette, delays and peaks");
       out_.left_out.push_back("rays beside the body: cells of the beam's rectangle that nothing projects into");
     }
-    const bool triangles =
-        std::count(geometry_.shape_rows.begin(), geometry_.shape_rows.end(), table_index("shape", "mesh")) > 0;
-    decide("CLRAY_TRIANGLES", triangles, "triangle test", "a mesh is in the scene", "no mesh in the scene");
-    decide("CLRAY_ANALYTIC", geometry_.shape_rows.size() > (triangles ? 1u : 0u), "analytic shapes", "in the scene",
+    const auto made_of_faces = [](int row) { return table("shape")[static_cast<std::size_t>(row)].faces; };
+    const std::vector<int>& rows = geometry_.shape_rows;
+    decide("CLRAY_TRIANGLES", std::any_of(rows.begin(), rows.end(), made_of_faces), "triangle test",
+           "a mesh is in the scene", "no mesh in the scene");
+    decide("CLRAY_ANALYTIC", !std::all_of(rows.begin(), rows.end(), made_of_faces), "analytic shapes", "in the scene",
            "the scene is made of triangles");
     if (plan_.request.lanes.size() == 1)
       out_.left_out.push_back("wavelengths and variants: one lane, one number per material");

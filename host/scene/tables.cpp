@@ -82,7 +82,7 @@ std::string next_word(const std::string& text, std::size_t* at) {
 
 void parse_traits(const std::string& traits, TableRow* row) {
   const std::pair<const char*, bool TableRow::*> known[] = {
-      {"delta", &TableRow::delta},       {"bounded", &TableRow::bounded},   {"flat", &TableRow::flat},
+      {"delta", &TableRow::delta},       {"bounded", &TableRow::bounded},   {"flat", &TableRow::flat}, {"faces", &TableRow::faces},
       {"file", &TableRow::file},         {"beam", &TableRow::beam},         {"pixel", &TableRow::pixel},
       {"connects", &TableRow::connects}, {"scatters", &TableRow::scatters}, {"inner", &TableRow::inner},
       {"whole", &TableRow::whole},       {"mirrors", &TableRow::mirrors}};

@@ -54,6 +54,7 @@ struct TableRow {
   bool delta = false;    ///< models: an ideal reflection
   bool bounded = false;  ///< models: no weight exceeds the bound of a first bounce
   bool flat = false;     ///< shapes: every face lies in a plane
+  bool faces = false;    ///< shapes: made of triangles
   bool file = false;     ///< models and shapes: read from a file
   std::vector<TableKey> keys;
   std::string meaning;
