@@ -16,8 +16,8 @@ enum class Triangulation {
   crossing,  ///< the outline crosses itself or has no plane: a fan from its first corner
 };
 
-/// Concave polygons with more corners than this are refused: ear clipping takes the square of their number.
-constexpr std::size_t kMaxConcaveCorners = 20000;
+/// Concave polygons with more corners than this are refused: ear clipping takes seconds for them.
+constexpr std::size_t kMaxConcaveCorners = 100000;
 
 /// Appends the triangles (corner positions 0 … n-1 of the polygon, n-2 triangles) to `triangles`.
 /// Throws Error(input) without context for a concave polygon of too many corners.
