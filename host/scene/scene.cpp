@@ -29,7 +29,7 @@ Scene bare_mesh(const std::string& path, const SceneOptions& options) {
   component.name = scene.name;
   component.mesh = load_mesh(path, options.length_unit_m > 0.0 ? options.length_unit_m : 1.0);
   scene.warnings = component.mesh->warnings;
-  assign_materials(&scene, 0, &component, {}, "");
+  MaterialBook(&scene).assign(&component, {}, "");
   scene.components.push_back(std::move(component));
   return scene;
 }

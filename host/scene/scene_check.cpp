@@ -6,7 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
-#include <set>
+#include <string_view>
+#include <unordered_set>
 
 #include "clray/error.hpp"
 #include "scene/file/keys.hpp"
@@ -191,13 +192,14 @@ void check_trace(const TraceOptions& o) {
 /// name has that of its kind.
 template <typename List>
 void check_names(const std::string& where, const List& list) {
-  std::set<std::string> names;
+  std::unordered_set<std::string_view> names;
+  names.reserve(list.size());
   for (const auto& each : list) {
-    std::string name = each.name;
+    std::string_view name = each.name;
     if constexpr (std::is_same_v<List, std::vector<DetectorSpec>>) {
       if (name.empty()) name = each.kind;
     }
-    if (!names.insert(name).second) fail(where, "a second one of the name \"" + name + "\"");
+    if (!names.insert(name).second) fail(where, "a second one of the name \"" + std::string(name) + "\"");
   }
 }
 
@@ -296,11 +298,15 @@ void check_scene(const Scene& scene) {
                                         "expected at most {:g} times its {:.6g} m",
                                         distance, kFarthest, body_m));
   }
+  std::unordered_set<std::string_view> defined;
+  if (!scene.variants.empty()) {
+    for (const Material& m : scene.materials) defined.insert(m.name);
+  }
   for (std::size_t i = 0; i < scene.variants.size(); ++i) {
     const std::string where = fmt::format("variants[{}].materials", i);
     check_names(where, scene.variants[i].materials);
     for (const Material& m : scene.variants[i].materials) {
-      if (find_material(scene, m.name) < 0) fail(where, "nobody defines a material \"" + m.name + "\"");
+      if (defined.count(m.name) == 0) fail(where, "nobody defines a material \"" + m.name + "\"");
       check_material(where, m);
     }
   }

@@ -13,9 +13,6 @@ namespace clray {
 /// Reads a scene file into a scene, all of it but what the command line adds.
 Scene read_scene_file(const std::string& path, const SceneOptions& options);
 
-/// [[component]] tables: shapes, meshes (shared by file), transforms, hinges, materials.
-void read_components(TomlTable& root, double length_unit_m, Scene* scene);
-
 void read_source(TomlTable& root, Scene* scene);
 void read_observers(TomlTable& root, Scene* scene);
 void read_motion(TomlTable& root, Scene* scene);

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "scene/corner_tree.hpp"
-#include "scene/mesh_triangulate.hpp"
+#include "scene/mesh/corner_tree.hpp"
+#include "scene/mesh/mesh_triangulate.hpp"
 
 namespace {
 

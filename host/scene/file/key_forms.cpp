@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <set>
 
 #include "clray/error.hpp"
 #include "scene/file/scene_csv.hpp"
@@ -111,12 +112,11 @@ void read_bands(TomlTable& t, const std::string& key, Source* s) {
   if (array == nullptr || array->empty()) {
     t.fail(key, "expected [[low_nm, high_nm], …] or { low_nm, high_nm, count }, found " + found(*value));
   }
+  std::set<std::string> taken;
   for (const toml::node& each : *array) {
     const Band band = read_band(t, each);
-    for (const Band& other : s->bands) {
-      if (other.name == band.name)
-        t.fail_at(each.source(), "source.bands: a second band of the name \"" + band.name + "\"");
-    }
+    if (!taken.insert(band.name).second)
+      t.fail_at(each.source(), "source.bands: a second band of the name \"" + band.name + "\"");
     s->bands.push_back(band);
   }
 }

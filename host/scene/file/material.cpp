@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 #include <sstream>
+#include <string_view>
 #include <unordered_map>
 
 #include "clray/error.hpp"
@@ -56,53 +57,6 @@ bool same(const Material& a, const Material& b) {
   }
   return true;
 }
-
-/// The materials of a scene and of a component's mesh file by name. A library may hold a million of them.
-class NameIndex {
- public:
-  NameIndex(Scene* scene, const Component& component) : scene_(scene), component_(component) {
-    for (std::size_t i = 0; i < scene->materials.size(); ++i) place_.emplace(scene->materials[i].name, i);
-    if (!component.mesh) return;
-    for (const Material& m : component.mesh->file_materials) file_[m.name] = &m;
-  }
-
-  int find(const std::string& name) const {
-    const auto there = place_.find(name);
-    return there == place_.end() ? -1 : static_cast<int>(there->second);
-  }
-
-  const Material* from_file(const std::string& name) const {
-    const auto there = file_.find(name);
-    return there == file_.end() ? nullptr : there->second;
-  }
-
-  std::uint32_t add_if_missing(Material material) {
-    const int there = find(material.name);
-    return there >= 0 ? static_cast<std::uint32_t>(there) : add(std::move(material));
-  }
-
-  /// Adds a mesh file's own material. An equal one is shared; if a different one has its name, it is renamed.
-  std::uint32_t add_from_file(Material material) {
-    const int there = find(material.name);
-    if (there < 0) return add(std::move(material));
-    if (same(scene_->materials[static_cast<std::size_t>(there)], material)) return static_cast<std::uint32_t>(there);
-    material.name += " (" + component_.name + ")";
-    return add(std::move(material));
-  }
-
- private:
-  std::uint32_t add(Material material) {
-    const std::size_t place = scene_->materials.size();
-    place_.emplace(material.name, place);
-    scene_->materials.push_back(std::move(material));
-    return static_cast<std::uint32_t>(place);
-  }
-
-  Scene* scene_;
-  const Component& component_;
-  std::unordered_map<std::string, std::size_t> place_;
-  std::unordered_map<std::string, const Material*> file_;
-};
 
 [[noreturn]] void usage(const std::string& message) {
   throw Error(ErrorCode::usage, message, "--material");
@@ -162,11 +116,66 @@ Material default_material() {
   return m;
 }
 
-int find_material(const Scene& scene, const std::string& name) {
-  for (std::size_t i = 0; i < scene.materials.size(); ++i) {
-    if (scene.materials[i].name == name) return static_cast<int>(i);
+MaterialBook::MaterialBook(Scene* scene) : scene_(scene) {
+  for (std::size_t i = 0; i < scene->materials.size(); ++i) {
+    place_.emplace(scene->materials[i].name, static_cast<std::uint32_t>(i));
   }
-  return -1;
+}
+
+int MaterialBook::find(const std::string& name) const {
+  const auto there = place_.find(name);
+  return there == place_.end() ? -1 : static_cast<int>(there->second);
+}
+
+std::uint32_t MaterialBook::add(Material material) {
+  const auto place = static_cast<std::uint32_t>(scene_->materials.size());
+  place_.emplace(material.name, place);
+  scene_->materials.push_back(std::move(material));
+  return place;
+}
+
+std::uint32_t MaterialBook::add_if_missing(Material material) {
+  const int there = find(material.name);
+  return there >= 0 ? static_cast<std::uint32_t>(there) : add(std::move(material));
+}
+
+// Adds a mesh file's own material. An equal one is shared; if a different one has its name, it is renamed.
+std::uint32_t MaterialBook::add_from_file(Material material, const std::string& component) {
+  const int there = find(material.name);
+  if (there < 0) return add(std::move(material));
+  if (same(scene_->materials[static_cast<std::size_t>(there)], material)) return static_cast<std::uint32_t>(there);
+  material.name += " (" + component + ")";
+  return add(std::move(material));
+}
+
+bool MaterialBook::assign(Component* component, const std::map<std::string, std::string>& by_slot,
+                          const std::string& common) {
+  const std::vector<std::string> shape_slot{""};
+  const Mesh* mesh = component->mesh.get();
+  const std::vector<std::string>& slots = mesh != nullptr ? mesh->material_slots : shape_slot;
+  std::unordered_map<std::string_view, const Material*> in_file;
+  if (mesh != nullptr) {
+    in_file.reserve(mesh->file_materials.size());
+    for (const Material& m : mesh->file_materials) in_file.emplace(m.name, &m);
+  }
+  component->materials.clear();
+  component->materials.reserve(slots.size());
+  bool defaulted = false;
+  for (const std::string& slot : slots) {
+    const auto mapped = by_slot.find(slot);
+    const std::string& wanted = mapped != by_slot.end() ? mapped->second : common;
+    const int named = find(wanted.empty() ? slot : wanted);
+    const bool own = !wanted.empty() || (named >= 0 && static_cast<std::size_t>(named) < defined_);
+    if (own && named >= 0) {
+      component->materials.push_back(static_cast<std::uint32_t>(named));
+      continue;
+    }
+    const auto own_of_file = slot.empty() ? in_file.end() : in_file.find(slot);
+    defaulted = defaulted || own_of_file == in_file.end();
+    component->materials.push_back(own_of_file != in_file.end() ? add_from_file(*own_of_file->second, component->name)
+                                                                : add_if_missing(default_material()));
+  }
+  return defaulted;
 }
 
 Material read_material(TomlTable& t, const Material* base) {
@@ -208,31 +217,6 @@ Material parse_material(const std::string& text) {
   for (std::string pair; words >> pair;) parse_pair(pair, row, &m);
   if (row.file && !m.table) usage(fmt::format("model '{}' needs file=TABLE.csv", row.name));
   return m;
-}
-
-bool assign_materials(Scene* scene, std::size_t defined, Component* component,
-                      const std::map<std::string, std::string>& by_slot, const std::string& common) {
-  const std::vector<std::string> shape_slot{""};
-  const Mesh* mesh = component->mesh.get();
-  const std::vector<std::string>& slots = mesh != nullptr ? mesh->material_slots : shape_slot;
-  component->materials.clear();
-  NameIndex index(scene, *component);
-  bool defaulted = false;
-  for (const std::string& slot : slots) {
-    const auto mapped = by_slot.find(slot);
-    const std::string wanted = mapped != by_slot.end() ? mapped->second : common;
-    const int named = index.find(wanted.empty() ? slot : wanted);
-    const bool own = !wanted.empty() || (named >= 0 && static_cast<std::size_t>(named) < defined);
-    if (own && named >= 0) {
-      component->materials.push_back(static_cast<std::uint32_t>(named));
-      continue;
-    }
-    const Material* from_file = slot.empty() ? nullptr : index.from_file(slot);
-    defaulted = defaulted || from_file == nullptr;
-    component->materials.push_back(from_file != nullptr ? index.add_from_file(*from_file)
-                                                        : index.add_if_missing(default_material()));
-  }
-  return defaulted;
 }
 
 }  // namespace clray

@@ -5,6 +5,7 @@
 
 #include <map>
 #include <string>
+#include <unordered_map>
 
 #include "clray/scene.hpp"
 #include "scene/file/toml_reader.hpp"
@@ -21,13 +22,30 @@ Material parse_material(const std::string& text);
 /// Lambert, rho = 0.5: the surface of a part that nobody described.
 Material default_material();
 
-/// Index of a material by name, or -1.
-int find_material(const Scene& scene, const std::string& name);
+/// The materials of a scene by name, while the scene is read. There may be a million of them.
+class MaterialBook {
+ public:
+  explicit MaterialBook(Scene* scene);
 
-/// Fills `component->materials`, one per slot: `by_slot` first, then `common`, then a scene material of the slot's
-/// name (the first `defined` of scene->materials), then the mesh file's, then the default. Adds what it needs to
-/// the scene. Names must exist. Returns whether the default was needed.
-bool assign_materials(Scene* scene, std::size_t defined, Component* component,
-                      const std::map<std::string, std::string>& by_slot, const std::string& common);
+  /// Index of a material by name, or -1.
+  int find(const std::string& name) const;
+  /// Adds a material whose name is not there yet. Returns its index.
+  std::uint32_t add(Material material);
+  /// Ends what the scene itself defines; what comes later are materials of mesh files and the default.
+  void close() { defined_ = scene_->materials.size(); }
+
+  /// Fills `component->materials`, one per slot: `by_slot` first, then `common`, then a material that the scene defines
+  /// under the slot's name, then the mesh file's, then the default. Adds what it needs to the scene. Names must exist.
+  /// Returns whether the default was needed.
+  bool assign(Component* component, const std::map<std::string, std::string>& by_slot, const std::string& common);
+
+ private:
+  std::uint32_t add_if_missing(Material material);
+  std::uint32_t add_from_file(Material material, const std::string& component);
+
+  Scene* scene_;
+  std::unordered_map<std::string, std::uint32_t> place_;
+  std::size_t defined_ = 0;
+};
 
 }  // namespace clray

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <sstream>
 
 #include "clray/error.hpp"
@@ -51,12 +52,13 @@ double length_unit(TomlTable& root) {
   return length_units()[static_cast<std::size_t>(std::find(names.begin(), names.end(), unit) - names.begin())].second;
 }
 
-void read_materials(TomlTable& root, Scene* scene) {
+void read_materials(TomlTable& root, MaterialBook* book) {
   for (TomlTable& t : root.tables("material")) {
     Material m = read_material(t);
-    if (find_material(*scene, m.name) >= 0) t.fail("name", "a second material of the name \"" + m.name + "\"");
-    scene->materials.push_back(std::move(m));
+    if (book->find(m.name) >= 0) t.fail("name", "a second material of the name \"" + m.name + "\"");
+    book->add(std::move(m));
   }
+  book->close();
 }
 
 std::vector<std::string> material_names(const Scene& scene) {
@@ -66,9 +68,9 @@ std::vector<std::string> material_names(const Scene& scene) {
 }
 
 /// A material's name, which a [[material]] must have.
-std::string known_material(TomlTable& t, const std::string& key, const Scene& scene) {
+std::string known_material(TomlTable& t, const std::string& key, const Scene& scene, const MaterialBook& book) {
   const std::string name = t.text(key);
-  if (find_material(scene, name) < 0) {
+  if (book.find(name) < 0) {
     t.fail(key, "nobody defines a material \"" + name + "\"" + did_you_mean(name, material_names(scene)));
   }
   return name;
@@ -154,56 +156,59 @@ void read_mesh(TomlTable& t, double unit_m, MeshCache* cache, Scene* scene, Comp
   c->mesh = mesh;
 }
 
-void read_component_materials(TomlTable& t, std::size_t defined, Scene* scene, Component* c) {
-  const std::string common = t.has("material") ? known_material(t, "material", *scene) : "";
+void read_component_materials(TomlTable& t, Scene* scene, MaterialBook* book, Component* c) {
+  const std::string common = t.has("material") ? known_material(t, "material", *scene, *book) : "";
   std::map<std::string, std::string> by_slot;
   if (c->mesh) {
     if (std::optional<TomlTable> map = t.table("materials")) {
       const std::vector<std::string>& slots = c->mesh->material_slots;
+      const std::set<std::string_view> known(slots.begin(), slots.end());
       for (const std::string& slot : map->keys()) {
-        if (std::find(slots.begin(), slots.end(), slot) == slots.end()) {
+        if (known.count(slot) == 0) {
           map->fail(slot, "the mesh has no material of this name" + did_you_mean(slot, slots) + "; it has " +
                               fmt::format("{}", fmt::join(slots, ", ")));
         }
-        by_slot[slot] = known_material(*map, slot, *scene);
+        by_slot[slot] = known_material(*map, slot, *scene, *book);
       }
     }
   }
-  if (assign_materials(scene, defined, c, by_slot, common)) {
+  if (book->assign(c, by_slot, common)) {
     scene->warnings.push_back(
         fmt::format("{}: component '{}' has no material for all of its surface: lambert, rho 0.5", t.place(), c->name));
   }
 }
 
-/// The given name, or one made of the shape that no other component has.
-std::string component_name(TomlTable& t, const Scene& scene, const std::string& shape) {
-  const auto taken = [&](const std::string& name) {
-    return std::any_of(scene.components.begin(), scene.components.end(),
-                       [&](const Component& c) { return c.name == name; });
-  };
-  if (t.has("name")) {
-    const std::string name = t.name("name");
-    if (taken(name)) t.fail("name", "a second component of the name \"" + name + "\"");
+/// Names of components: given ones, and ones made of the shape that no earlier component has.
+class ComponentNames {
+ public:
+  std::string next(TomlTable& t, const std::string& shape) {
+    std::string name = t.has("name") ? t.name("name") : shape;
+    if (taken_.insert(name).second) return name;
+    if (t.has("name")) t.fail("name", "a second component of the name \"" + name + "\"");
+    int& number = last_.emplace(shape, 1).first->second;
+    do {
+      name = fmt::format("{}-{}", shape, ++number);
+    } while (!taken_.insert(name).second);
     return name;
   }
-  std::string name = shape;
-  for (int i = 2; taken(name); ++i) name = fmt::format("{}-{}", shape, i);
-  return name;
-}
 
-void read_variants(TomlTable& root, Scene* scene) {
+ private:
+  std::set<std::string> taken_;
+  std::map<std::string, int> last_;  // number given to a component of each shape
+};
+
+void read_variants(TomlTable& root, Scene* scene, const MaterialBook& book) {
+  std::set<std::string> taken;
   for (TomlTable& t : root.tables("variant")) {
     Variant v;
     v.name = t.name("name");
-    for (const Variant& other : scene->variants) {
-      if (other.name == v.name) t.fail("name", "a second variant of the name \"" + v.name + "\"");
-    }
+    if (!taken.insert(v.name).second) t.fail("name", "a second variant of the name \"" + v.name + "\"");
+    std::set<std::string> replaced;
     for (TomlTable& m : t.tables("material")) {
-      const std::string name = known_material(m, "name", *scene);
-      for (const Material& other : v.materials) {
-        if (other.name == name) m.fail("name", "a second material of the name \"" + name + "\" in this variant");
-      }
-      const std::size_t base = static_cast<std::size_t>(find_material(*scene, name));
+      const std::string name = known_material(m, "name", *scene, book);
+      if (!replaced.insert(name).second)
+        m.fail("name", "a second material of the name \"" + name + "\" in this variant");
+      const auto base = static_cast<std::size_t>(book.find(name));
       v.materials.push_back(read_material(m, &scene->materials[base]));
     }
     t.finish();
@@ -212,15 +217,14 @@ void read_variants(TomlTable& root, Scene* scene) {
   }
 }
 
-}  // namespace
-
-void read_components(TomlTable& root, double length_unit_m, Scene* scene) {
-  const std::size_t defined = scene->materials.size();
+/// [[component]] tables: shapes, meshes (shared by file), transforms, hinges, materials.
+void read_components(TomlTable& root, double length_unit_m, Scene* scene, MaterialBook* book) {
   MeshCache cache;
+  ComponentNames names;
   for (TomlTable& t : root.tables("component")) {
     Component c;
     read_shape(t, &c);
-    c.name = component_name(t, *scene, c.shape);
+    c.name = names.next(t, c.shape);
     if (std::optional<TomlTable> transform = t.table("transform")) c.transform = read_transform(*transform);
     if (std::optional<TomlTable> hinge = t.table("hinge")) c.hinge = read_hinge(*hinge);
     t.know({"material"});
@@ -228,7 +232,7 @@ void read_components(TomlTable& root, double length_unit_m, Scene* scene) {
       t.know({"file", "materials"});
       read_mesh(t, length_unit_m, &cache, scene, &c);
     }
-    read_component_materials(t, defined, scene, &c);
+    read_component_materials(t, scene, book, &c);
     t.finish();
     if (const std::string fault = distance_fault(c); !fault.empty())
       throw Error(ErrorCode::input, "component." + fault, t.place());
@@ -239,6 +243,8 @@ void read_components(TomlTable& root, double length_unit_m, Scene* scene) {
     root.fail("component", "missing; expected at least one [[component]]");
   }
 }
+
+}  // namespace
 
 Scene read_scene_file(const std::string& path, const SceneOptions& options) {
   const toml::table parsed = parse_file(path);
@@ -251,9 +257,10 @@ Scene read_scene_file(const std::string& path, const SceneOptions& options) {
   const double unit_m = length_unit(root);
   scene.reference_point = read_place(root, "reference_point", scene.reference_point);
   root.finish();
-  read_materials(root, &scene);
-  read_components(root, options.length_unit_m > 0.0 ? options.length_unit_m : unit_m, &scene);
-  read_variants(root, &scene);
+  MaterialBook book(&scene);
+  read_materials(root, &book);
+  read_components(root, options.length_unit_m > 0.0 ? options.length_unit_m : unit_m, &scene, &book);
+  read_variants(root, &scene, book);
   read_detectors(root, &scene);
   read_source(root, &scene);
   read_observers(root, &scene);

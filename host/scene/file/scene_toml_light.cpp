@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The sections of a scene file about light and measurement: source, observers, motion, station, detectors, trace. Their
 // keys are the rows of keys.def. Rules about several keys of a section stand here.
+#include <set>
+#include <string>
+
 #include "clray/error.hpp"
 #include "scene/file/keys.hpp"
 #include "scene/motion.hpp"
@@ -17,12 +20,12 @@ void read_source(TomlTable& root, Scene* scene) {
 }
 
 void read_observers(TomlTable& root, Scene* scene) {
+  std::set<std::string> taken;
   for (TomlTable& t : root.tables("observer")) {
     Observer o;
     read_keys(t, &o);
     if (o.monostatic) o.direction = scene->source.direction;
-    for (const Observer& other : scene->observers) {
-      if (other.name != o.name) continue;
+    if (!taken.insert(o.name).second) {
       if (o.name.empty())
         throw Error(ErrorCode::input, "observer.name: missing; several observers must be named", t.place());
       t.fail("name", "a second observer of the name \"" + o.name + "\"");
@@ -61,6 +64,7 @@ void read_station(TomlTable& root, Scene* scene) {
 }
 
 void read_detectors(TomlTable& root, Scene* scene) {
+  std::set<std::string> taken;
   for (TomlTable& t : root.tables("detector")) {
     DetectorSpec d;
     d.kind = t.choice("kind", row_names("detector"));
@@ -74,12 +78,10 @@ void read_detectors(TomlTable& root, Scene* scene) {
       const std::string key = fault.substr(0, fault.find(':'));
       throw Error(ErrorCode::input, "detector." + fault, t.has(key) ? t.place(key) : t.place());
     }
-    for (const DetectorSpec& other : scene->detectors) {
-      if (other.name == d.name) {
-        throw Error(ErrorCode::input,
-                    "detector.name: a second detector of the name \"" + d.name + "\"; several of a kind must be named",
-                    t.place("name"));
-      }
+    if (!taken.insert(d.name).second) {
+      throw Error(ErrorCode::input,
+                  "detector.name: a second detector of the name \"" + d.name + "\"; several of a kind must be named",
+                  t.place("name"));
     }
     scene->detectors.push_back(std::move(d));
   }

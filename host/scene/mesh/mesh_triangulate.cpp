@@ -9,7 +9,7 @@
 #include <set>
 
 #include "clray/error.hpp"
-#include "scene/corner_tree.hpp"
+#include "scene/mesh/corner_tree.hpp"
 #include "shared/portable.h"
 
 namespace clray {

@@ -18,7 +18,7 @@ namespace {
 constexpr double kMostNs = 1.0e6;
 
 struct MtlEntry {
-  std::string name;
+  std::string_view name;  // of the file
   std::uint64_t line = 0;
   std::optional<double> kd, ks;  // means over the colours
   double ns = 0.0;
@@ -167,7 +167,7 @@ class MtlReader {
   TextCursor text_;
   std::optional<MtlEntry> current_;
   std::vector<MtlEntry> entries_;
-  std::unordered_map<std::string, std::size_t> place_of_;
+  std::unordered_map<std::string_view, std::size_t> place_of_;  // by the words of the file
   Tally early_, unnamed_, twice_, outside_, strange_illum_, spectral_, no_illum_, no_kd_, bright_, transparent_;
 };
 

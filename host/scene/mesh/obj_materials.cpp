@@ -47,6 +47,7 @@ class NameTable {
 
   /// The name of material `i`, without its comment if it is then still unlike the others.
   std::string name(std::size_t i) const {
+    if (materials_[i].name.find('#') == std::string::npos) return materials_[i].name;
     const std::string plain = without_comment(materials_[i].name);
     return look_up({&whole_, &cut_}, plain) == static_cast<int>(i) ? plain : materials_[i].name;
   }
@@ -153,15 +154,15 @@ void ObjMaterials::add(Material material, std::uint64_t line) {
   materials_[entry->second] = std::move(material);
 }
 
-std::uint32_t ObjMaterials::slot(const std::string& name, std::uint64_t line) {
+std::uint32_t ObjMaterials::slot(std::string_view name, std::uint64_t line) {
   const auto [entry, inserted] = slot_of_.emplace(name, static_cast<std::uint32_t>(slots_.size()));
-  if (inserted) slots_.push_back({name, line, false});
+  if (inserted) slots_.push_back({std::string(name), line, false});
   return entry->second;
 }
 
 void ObjMaterials::use(std::string_view name, std::uint64_t line) {
-  const std::string whole(name);
-  current_ = static_cast<int>(slot(without_comment(name).empty() ? kUnnamedMaterial : whole, line));
+  const bool unnamed = name.empty() || (name.front() == '#' && without_comment(name).empty());
+  current_ = static_cast<int>(slot(unnamed ? std::string_view(kUnnamedMaterial) : name, line));
 }
 
 std::uint32_t ObjMaterials::face_slot() {
@@ -200,9 +201,12 @@ void ObjMaterials::finish(PolygonSoup& soup) {
   }
   for (std::uint32_t& s : soup.face_slot) s = place[s];
   warn_of_unknown(unknown, soup.warnings);
-  std::vector<std::string> called;  // all of them before any changes, since the table looks at names as written
-  for (std::size_t i = 0; i < materials_.size(); ++i) called.push_back(names.name(i));
-  for (std::size_t i = 0; i < materials_.size(); ++i) materials_[i].name = std::move(called[i]);
+  // All new names before any changes, since the table looks at names as written.
+  std::vector<std::pair<std::size_t, std::string>> renamed;
+  for (std::size_t i = 0; i < materials_.size(); ++i) {
+    if (std::string name = names.name(i); name != materials_[i].name) renamed.emplace_back(i, std::move(name));
+  }
+  for (auto& [i, name] : renamed) materials_[i].name = std::move(name);
   soup.file_materials = std::move(materials_);
 }
 

@@ -15,6 +15,7 @@ namespace clray {
 
 class ObjMaterials {
  public:
+  /// `path` and the text of the statements must outlive this.
   explicit ObjMaterials(const std::string& path) : path_(path) {}
 
   /// A mtllib statement: one name with spaces, or several.
@@ -35,12 +36,12 @@ class ObjMaterials {
 
   bool library(const std::string& name, std::uint64_t line, std::vector<std::string>& warnings);
   void add(Material material, std::uint64_t line);
-  std::uint32_t slot(const std::string& name, std::uint64_t line);
+  std::uint32_t slot(std::string_view name, std::uint64_t line);
   void warn_of_unknown(const std::vector<Slot>& unknown, std::vector<std::string>& warnings) const;
 
   const std::string& path_;
   std::vector<Slot> slots_;
-  std::unordered_map<std::string, std::uint32_t> slot_of_;
+  std::unordered_map<std::string_view, std::uint32_t> slot_of_;  // by the words of the file, which outlives this
   int current_ = -1;
   std::vector<Material> materials_;
   std::unordered_map<std::string, std::size_t> material_of_;

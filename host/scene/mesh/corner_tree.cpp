@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Builds the tree of a polygon's corners; see corner_tree.hpp. Nodes are split at the median, by x and y in turn: then
 // a straight line meets the square root of the number of nodes, wherever the corners lie.
-#include "scene/corner_tree.hpp"
+#include "scene/mesh/corner_tree.hpp"
 
 #include <algorithm>
 #include <numeric>
