@@ -13,6 +13,7 @@
 
 #include "clray/error.hpp"
 #include "ephemeris/epoch.hpp"
+#include "text/input_file.hpp"
 
 namespace clray::ephemeris {
 
@@ -26,9 +27,7 @@ bool is_na(std::string_view text) {
 
 }  // namespace
 
-RecordReader::RecordReader(const std::string& path) : path_(path), file_(std::fopen(path.c_str(), "rb")) {
-  if (!file_) throw Error(ErrorCode::input, std::string("cannot be opened: ") + std::strerror(errno), path);
-}
+RecordReader::RecordReader(const std::string& path) : path_(path), file_(text::open_input(path)) {}
 
 bool RecordReader::read_line() {
   char buffer[kLongestLine + 2];

@@ -3,11 +3,11 @@
 #pragma once
 
 #include <cstdint>
-#include <cstdio>
-#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "text/input_file.hpp"
 
 namespace clray::ephemeris {
 
@@ -48,11 +48,8 @@ class RecordReader {
   /// One line, split, be it blank.
   bool read_line();
 
-  struct Close {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
   std::string path_, line_, type_;
-  std::unique_ptr<std::FILE, Close> file_;
+  text::InputFile file_;
   std::size_t number_ = 0;
   std::vector<std::string_view> fields_;
 };

@@ -3,13 +3,11 @@
 // true error of a result is measured.
 #include <charconv>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "clray/error.hpp"
 #include "io/writer.hpp"
+#include "text/input_file.hpp"
 #include "text/text.hpp"
 
 namespace clray {
@@ -109,11 +107,7 @@ double wanted_total(const Total& total, bool first, const Reference& reference) 
 }  // namespace
 
 Reference load_reference(const std::string& file) {
-  std::error_code error;
-  const bool is_folder = std::filesystem::is_directory(file, error);
-  std::ifstream in(file, std::ios::binary);
-  const std::string text = is_folder ? "" : std::string{std::istreambuf_iterator<char>(in), {}};
-  if (is_folder || !in || in.bad()) fail(file, 0, "cannot be read; expected a summary.json or a delay.csv");
+  const std::string text = text::read_input_file(file);
   const auto first = text.find_first_not_of(" \t\r\n");
   if (first == std::string::npos) fail(file, 0, "is empty; expected a summary.json or a delay.csv");
   return text[first] == '{' ? from_summary(file, text) : from_table(file, text);

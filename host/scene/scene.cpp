@@ -14,6 +14,7 @@
 #include "scene/mesh/foreign_format.hpp"
 #include "scene/scene_parts.hpp"
 #include "scene/tables.hpp"
+#include "text/input_file.hpp"
 #include "text/text.hpp"
 
 namespace clray {
@@ -156,8 +157,8 @@ Scene load_scene(const std::string& path, const SceneOptions& options) {
         (foreign.empty() ? "" : foreign + "; ") + "expected a scene file (.toml) or a mesh (.obj .ply .stl .off)",
         path);
   }
-  std::error_code error;
-  if (!fs::is_regular_file(path, error)) throw Error(ErrorCode::input, "there is no such file", path);
+  if (const std::string fault = text::input_file_fault(path); !fault.empty())
+    throw Error(ErrorCode::input, fault, path);
   Scene scene = mesh ? bare_mesh(path, options) : read_scene_file(path, options);
   apply_options(options, &scene);
   if (mesh) light_for_pictures(options, &scene);

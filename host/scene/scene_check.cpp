@@ -18,6 +18,7 @@
 #include "scene/spectrum.hpp"
 #include "scene/tables.hpp"
 #include "shared/portable.h"
+#include "text/name_index.hpp"
 
 namespace clray {
 namespace {
@@ -192,14 +193,16 @@ void check_trace(const TraceOptions& o) {
 /// name has that of its kind.
 template <typename List>
 void check_names(const std::string& where, const List& list) {
-  std::unordered_set<std::string_view> names;
-  names.reserve(list.size());
-  for (const auto& each : list) {
-    std::string_view name = each.name;
+  const auto name_at = [&](std::size_t i) -> std::string_view {
     if constexpr (std::is_same_v<List, std::vector<DetectorSpec>>) {
-      if (name.empty()) name = each.kind;
+      if (list[i].name.empty()) return list[i].kind;
     }
-    if (!names.insert(name).second) fail(where, "a second one of the name \"" + std::string(name) + "\"");
+    return list[i].name;
+  };
+  text::NameIndex names;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    if (!names.insert(name_at(i), static_cast<std::uint32_t>(i), name_at).second)
+      fail(where, "a second one of the name \"" + std::string(name_at(i)) + "\"");
   }
 }
 

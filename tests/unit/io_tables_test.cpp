@@ -331,6 +331,8 @@ TEST_CASE("references that are none are refused with their place") {
     }
   }
   CHECK_THROWS_WITH(load_reference(scratch / "bad.csv"), doctest::Contains("bad.csv:3"));
+  CHECK_THROWS_WITH(load_reference("/dev/zero"), "/dev/zero: is a device or pipe; a regular file was expected");
+  CHECK_THROWS_WITH(load_reference("/tmp"), "/tmp: is a folder; a file was expected");
 }
 
 TEST_CASE("spectra, light curves and pressure tables read back exactly") {

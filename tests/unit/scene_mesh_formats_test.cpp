@@ -271,7 +271,7 @@ TEST_CASE("cut-off, empty and foreign files are refused") {
     CHECK(refusal(kBox, name) != "accepted");
     const Folder folder;
     std::filesystem::create_directory(folder.path(name));
-    CHECK(refusal_of(folder.path(name)).find("is a directory") != std::string::npos);
+    CHECK(refusal_of(folder.path(name)).find("is a folder") != std::string::npos);
   }
 }
 

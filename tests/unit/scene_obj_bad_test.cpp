@@ -71,7 +71,7 @@ TEST_CASE("files without faces, without area, empty or of binary rubbish are ref
 TEST_CASE("directories, missing and unreadable files and other extensions are refused") {
   const Folder folder;
   fs::create_directory(folder.path("d.obj"));
-  CHECK(refusal_of(folder.path("d.obj")) == "d.obj|is a directory; a file was expected");
+  CHECK(refusal_of(folder.path("d.obj")) == "d.obj|is a folder; a file was expected");
   CHECK(refusal_of(folder.path("none.obj")).find("No such file") != std::string::npos);
   CHECK(refusal_of(folder.write("a.xyz", "v")).find(".obj, .ply, .stl or .off was expected") != std::string::npos);
   CHECK(refusal_of(folder.write("a.gltf", "{}")) ==

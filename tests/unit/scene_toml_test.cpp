@@ -20,6 +20,14 @@ TEST_CASE("toml: what is no TOML") {
   CHECK(f.complaint("[source]\nkind = \"sun\"\nkind = \"laser\"\n") ==
         "s.toml:3:8: not TOML: Error while parsing key-value pair: cannot redefine existing string 'kind'");
   CHECK(f.complaint("[source]\n[source]\n").find("s.toml:2:") == 0);
+  // Each of these met an assertion of the parser, which ends a debug build.
+  for (const char* text :
+       {"[=",       "[",        "[[",         "[[=",  "a = 90°", "a = ",   "a = \x01",         "a = _1",
+        "= 1",      "a.= 1",    "a = [1,,2]", "\x7f", "a = 1°",  "a = +é", "a = 2020-01-01 é", "[a.",
+        "a = {=1}", "a = \"\\", "\"",         "'",    "a = 0x",  "a=,",    "\xff\xfe"}) {
+    CAPTURE(text);
+    CHECK(f.complaint(text).find("not TOML: ") != std::string::npos);
+  }
   CHECK(f.complaint("") == "s.toml:1:1: component: missing; expected at least one [[component]]");
 }
 

@@ -9,11 +9,11 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <optional>
 
 #include "clray/error.hpp"
 #include "shared/portable.h"
+#include "text/input_file.hpp"
 
 namespace clray {
 namespace {
@@ -157,11 +157,12 @@ class Reader {
   }
 
   CsvTable read() {
-    std::ifstream stream(table_.file);
-    if (!stream) fail(table_.file, 0, "cannot be read");
-    std::string text;
-    for (line_ = 1; std::getline(stream, text); ++line_) {
-      if (line_ == 1 && text.compare(0, 3, "\xEF\xBB\xBF") == 0) text.erase(0, 3);
+    const std::string all = text::read_input_file(table_.file);
+    std::size_t at = all.compare(0, 3, "\xEF\xBB\xBF") == 0 ? 3 : 0;
+    for (line_ = 1; at < all.size(); ++line_) {
+      const std::size_t end = std::min(all.find('\n', at), all.size());
+      const std::string text = all.substr(at, end - at);
+      at = end + 1;
       const std::size_t hash = text.find('#');
       const std::string content = trimmed(text.substr(0, hash));
       if (content.empty()) {
@@ -170,7 +171,6 @@ class Reader {
         read_line(fields_of(content));
       }
     }
-    if (stream.bad()) fail(table_.file, 0, "cannot be read");
     if (table_.rows.empty()) fail(table_.file, 0, fmt::format("holds no rows of {}", order()));
     return std::move(table_);
   }

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <sstream>
 #include <string_view>
-#include <unordered_map>
 
 #include "clray/error.hpp"
 #include "scene/file/scene_csv.hpp"
@@ -56,6 +55,10 @@ bool same(const Material& a, const Material& b) {
     if (other == b.spectra.end() || !equal(spectrum, other->second)) return false;
   }
   return true;
+}
+
+auto names_of(const std::vector<Material>& list) {
+  return [&list](std::size_t i) -> std::string_view { return list[i].name; };
 }
 
 [[noreturn]] void usage(const std::string& message) {
@@ -117,20 +120,19 @@ Material default_material() {
 }
 
 MaterialBook::MaterialBook(Scene* scene) : scene_(scene) {
-  for (std::size_t i = 0; i < scene->materials.size(); ++i) {
-    place_.emplace(scene->materials[i].name, static_cast<std::uint32_t>(i));
-  }
+  for (std::size_t i = 0; i < scene->materials.size(); ++i)
+    place_.insert(scene->materials[i].name, static_cast<std::uint32_t>(i), names_of(scene->materials));
 }
 
 int MaterialBook::find(const std::string& name) const {
-  const auto there = place_.find(name);
-  return there == place_.end() ? -1 : static_cast<int>(there->second);
+  const std::uint32_t there = place_.find(name, names_of(scene_->materials));
+  return there == text::NameIndex::kNone ? -1 : static_cast<int>(there);
 }
 
 std::uint32_t MaterialBook::add(Material material) {
   const auto place = static_cast<std::uint32_t>(scene_->materials.size());
-  place_.emplace(material.name, place);
   scene_->materials.push_back(std::move(material));
+  place_.insert(scene_->materials.back().name, place, names_of(scene_->materials));
   return place;
 }
 
@@ -153,11 +155,9 @@ bool MaterialBook::assign(Component* component, const std::map<std::string, std:
   const std::vector<std::string> shape_slot{""};
   const Mesh* mesh = component->mesh.get();
   const std::vector<std::string>& slots = mesh != nullptr ? mesh->material_slots : shape_slot;
-  std::unordered_map<std::string_view, const Material*> in_file;
-  if (mesh != nullptr) {
-    in_file.reserve(mesh->file_materials.size());
-    for (const Material& m : mesh->file_materials) in_file.emplace(m.name, &m);
-  }
+  text::NameIndex in_file;
+  for (std::size_t i = 0; mesh != nullptr && i < mesh->file_materials.size(); ++i)
+    in_file.insert(mesh->file_materials[i].name, static_cast<std::uint32_t>(i), names_of(mesh->file_materials));
   component->materials.clear();
   component->materials.reserve(slots.size());
   bool defaulted = false;
@@ -170,10 +170,12 @@ bool MaterialBook::assign(Component* component, const std::map<std::string, std:
       component->materials.push_back(static_cast<std::uint32_t>(named));
       continue;
     }
-    const auto own_of_file = slot.empty() ? in_file.end() : in_file.find(slot);
-    defaulted = defaulted || own_of_file == in_file.end();
-    component->materials.push_back(own_of_file != in_file.end() ? add_from_file(*own_of_file->second, component->name)
-                                                                : add_if_missing(default_material()));
+    const std::uint32_t of_file =
+        slot.empty() ? text::NameIndex::kNone : in_file.find(slot, names_of(mesh->file_materials));
+    const bool none = of_file == text::NameIndex::kNone;
+    defaulted = defaulted || none;
+    component->materials.push_back(none ? add_if_missing(default_material())
+                                        : add_from_file(mesh->file_materials[of_file], component->name));
   }
   return defaulted;
 }

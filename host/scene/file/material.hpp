@@ -5,10 +5,10 @@
 
 #include <map>
 #include <string>
-#include <unordered_map>
 
 #include "clray/scene.hpp"
 #include "scene/file/toml_reader.hpp"
+#include "text/name_index.hpp"
 
 namespace clray {
 
@@ -44,7 +44,7 @@ class MaterialBook {
   std::uint32_t add_from_file(Material material, const std::string& component);
 
   Scene* scene_;
-  std::unordered_map<std::string, std::uint32_t> place_;
+  text::NameIndex place_;
   std::size_t defined_ = 0;
 };
 

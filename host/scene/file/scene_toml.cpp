@@ -6,17 +6,17 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <set>
-#include <sstream>
 
 #include "clray/error.hpp"
 #include "clray/keys.hpp"
 #include "scene/file/material.hpp"
+#include "scene/file/toml_depth.hpp"
 #include "scene/file/value_checks.hpp"
 #include "scene/scene_parts.hpp"
 #include "scene/tables.hpp"
 #include "shared/portable.h"
+#include "text/input_file.hpp"
 
 namespace clray {
 namespace {
@@ -29,12 +29,14 @@ double radians(double degrees) {
 }
 
 toml::table parse_file(const std::string& path) {
-  std::ifstream stream(path, std::ios::binary);
-  std::stringstream text;
-  text << stream.rdbuf();
-  if (!stream) throw Error(ErrorCode::input, "cannot be read", path);
+  const std::string text = text::read_input_file(path);
+  if (const TextPlace deep = deep_key(text); deep.line > 0) {
+    throw Error(ErrorCode::input,
+                fmt::format("a key of more than {} parts; at most that many were expected", kMostKeyParts),
+                fmt::format("{}:{}:{}", path, deep.line, deep.column));
+  }
   try {
-    return toml::parse(text.str(), path);
+    return toml::parse(text, path);
   } catch (const toml::parse_error& e) {
     const toml::source_position at = e.source().begin;
     throw Error(ErrorCode::input, "not TOML: " + std::string(e.description()),

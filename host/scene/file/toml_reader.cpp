@@ -10,6 +10,7 @@
 
 #include "clray/error.hpp"
 #include "scene/file/value_checks.hpp"
+#include "text/input_file.hpp"
 
 namespace clray {
 namespace {
@@ -220,7 +221,10 @@ std::string TomlTable::file(const std::string& key) {
   if (name.empty() || error || ends.first != root.end()) {
     fail(key, "expected a file inside the scene's folder, found \"" + name + "\"");
   }
-  if (fs::is_regular_file(path, error)) return (fs::path(file_).parent_path() / name).string();
+  const std::string shown = (fs::path(file_).parent_path() / name).string();
+  const std::string fault = text::input_file_fault(shown);
+  if (fault.empty()) return shown;
+  if (fs::exists(path, error)) fail(key, "\"" + name + "\" " + fault);
   std::vector<std::string> neighbours;
   const fs::path inside = fs::path(name).parent_path();
   for (fs::directory_iterator it(folder / inside, error), end; !error && it != end; it.increment(error)) {

@@ -1,20 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // load_mesh(): picks the reader by extension, scales to metres, triangulates, measures, and counts edges from the
 // file's own indices. Every face of the file that has an area stays in the Mesh, in its order.
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
 
 #include "scene/mesh/foreign_format.hpp"
 #include "scene/mesh/mesh_readers.hpp"
 #include "scene/mesh/mesh_soup.hpp"
 #include "scene/mesh/mesh_triangulate.hpp"
 #include "shared/portable.h"
+#include "text/input_file.hpp"
 #include "text/text.hpp"
 
 namespace clray {
@@ -23,15 +18,6 @@ namespace {
 
 // Areas and the tracer's fp32 boxes would overflow beyond it.
 constexpr double kMaxCoordinate_m = 1.0e15;
-
-class OpenFile {
- public:
-  explicit OpenFile(const std::string& path) : handle(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {}
-  ~OpenFile() {
-    if (handle >= 0) ::close(handle);
-  }
-  const int handle;
-};
 
 void scale_to_metres(std::vector<Vec3>& vertices, double unit, const std::string& path) {
   for (std::size_t i = 0; i < vertices.size(); ++i) {
@@ -118,7 +104,7 @@ PolygonSoup read_soup(const std::string& path) {
                (foreign.empty() ? "the extension '" + extension + "' is no mesh format" : foreign) +
                    "; .obj, .ply, .stl or .off was expected");
   }
-  const std::string content = read_mesh_file(path);
+  const std::string content = text::read_input_file(path);
   if (content.empty()) fail_input(path, 1, "the file is empty; a mesh was expected");
   PolygonSoup soup = reader(path, content);
   soup.short_faces.warn(path, "a face with fewer than three corners is left out", soup.warnings);
@@ -154,27 +140,6 @@ void measure(Mesh& mesh) {
 }
 
 }  // namespace
-
-std::string read_mesh_file(const std::string& path) {
-  const OpenFile file(path);
-  struct stat status {};
-  if (file.handle < 0 || ::fstat(file.handle, &status) != 0) {
-    fail_input(path, 0, std::string("cannot be read: ") + std::strerror(errno) + "; a readable file was expected");
-  }
-  if (S_ISDIR(status.st_mode)) fail_input(path, 0, "is a directory; a file was expected");
-  if (!S_ISREG(status.st_mode)) fail_input(path, 0, "is a device or pipe; a regular file was expected");
-  std::string content(static_cast<std::size_t>(status.st_size), '\0');
-  std::size_t done = 0;
-  while (done < content.size()) {
-    const ssize_t got = ::read(file.handle, &content[done], content.size() - done);
-    if (got < 0 && errno == EINTR) continue;
-    if (got < 0) fail_input(path, 0, std::string("cannot be read: ") + std::strerror(errno));
-    if (got == 0) break;
-    done += static_cast<std::size_t>(got);
-  }
-  content.resize(done);
-  return content;
-}
 
 std::shared_ptr<const Mesh> load_mesh(const std::string& path, double length_unit_m) {
   if (!(length_unit_m > 0.0 && std::isfinite(length_unit_m))) {

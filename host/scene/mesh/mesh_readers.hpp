@@ -10,9 +10,6 @@
 
 namespace clray {
 
-/// The whole of a regular file. Throws Error(input) if it is missing, a directory, a device or pipe, or unreadable.
-std::string read_mesh_file(const std::string& path);
-
 /// Wavefront OBJ, and the MTL libraries that it names inside its own folder.
 PolygonSoup read_obj(const std::string& path, const std::string& content);
 

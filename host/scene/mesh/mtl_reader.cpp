@@ -5,11 +5,12 @@
 
 #include <algorithm>
 #include <optional>
-#include <unordered_map>
 
 #include "scene/file/material.hpp"
 #include "scene/mesh/mesh_readers.hpp"
 #include "scene/mesh/mesh_text.hpp"
+#include "text/input_file.hpp"
+#include "text/name_index.hpp"
 
 namespace clray {
 
@@ -65,12 +66,14 @@ class MtlReader {
   // The entry takes the place of an earlier one of the same name, or a new place.
   void finish() {
     if (!current_) return;
-    const auto [place, inserted] = place_of_.emplace(current_->name, entries_.size());
+    const auto [place, inserted] =
+        place_of_.insert(current_->name, static_cast<std::uint32_t>(entries_.size()),
+                         [&](std::size_t i) { return i == entries_.size() ? current_->name : entries_[i].name; });
     if (inserted) {
       entries_.push_back(std::move(*current_));
     } else {
       twice_.add(current_->line, current_->name);
-      entries_[place->second] = std::move(*current_);
+      entries_[place] = std::move(*current_);
     }
     current_.reset();
   }
@@ -167,14 +170,14 @@ class MtlReader {
   TextCursor text_;
   std::optional<MtlEntry> current_;
   std::vector<MtlEntry> entries_;
-  std::unordered_map<std::string_view, std::size_t> place_of_;  // by the words of the file
+  text::NameIndex place_of_;
   Tally early_, unnamed_, twice_, outside_, strange_illum_, spectral_, no_illum_, no_kd_, bright_, transparent_;
 };
 
 }  // namespace
 
 std::vector<Material> read_mtl(const std::string& path, std::vector<std::string>& warnings) {
-  const std::string content = read_mesh_file(path);
+  const std::string content = text::read_input_file(path);
   return MtlReader(path, content).read(warnings);
 }
 

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <initializer_list>
+#include <unordered_map>
 
 #include "scene/mesh/mesh_text.hpp"
 #include "scene/mesh/mtl_reader.hpp"
@@ -22,7 +22,7 @@ constexpr std::size_t kMostWarnings = 16;
 class NameTable {
  public:
   /// `whole`: the places of the materials by their names as written.
-  NameTable(const std::vector<Material>& materials, const std::unordered_map<std::string, std::size_t>& whole)
+  NameTable(const std::vector<Material>& materials, const text::NameIndex& whole)
       : materials_(materials), whole_(whole) {
     for (std::size_t i = 0; i < materials.size(); ++i) {
       const std::string& name = materials[i].name;
@@ -34,14 +34,14 @@ class NameTable {
 
   /// Index of the material that `name` means, or -1. Two names are never compared after both were cut at a '#':
   /// "Material #27" is not "Material #25".
-  int find(const std::string& name) const {
-    int found = look_up({&whole_, &cut_}, name);
+  int find(std::string_view name) const {
+    int found = whole_or_cut(name);
     if (found < 0 && name.find('#') != name.npos) {
-      found = look_up({&whole_, &cut_}, without_comment(name));
-      if (found < 0) found = look_up({&whole_, &cut_}, without_comment(name, true));
+      found = whole_or_cut(without_comment(name));
+      if (found < 0) found = whole_or_cut(without_comment(name, true));
     }
-    if (found < 0) found = look_up({&loose_}, name);
-    if (found < 0) found = look_up({&loose_}, without_comment(name));
+    if (found < 0) found = look_up(loose_, std::string(name));
+    if (found < 0) found = look_up(loose_, without_comment(name));
     return found;
   }
 
@@ -49,7 +49,7 @@ class NameTable {
   std::string name(std::size_t i) const {
     if (materials_[i].name.find('#') == std::string::npos) return materials_[i].name;
     const std::string plain = without_comment(materials_[i].name);
-    return look_up({&whole_, &cut_}, plain) == static_cast<int>(i) ? plain : materials_[i].name;
+    return whole_or_cut(plain) == static_cast<int>(i) ? plain : materials_[i].name;
   }
 
  private:
@@ -57,21 +57,29 @@ class NameTable {
   static constexpr std::size_t kSeveral = ~std::size_t{0};
 
   void add(Map& map, const std::string& name, std::size_t i) {
-    if (whole_.count(name) > 0) return;
+    if (in_whole(name) >= 0) return;
     const auto [entry, inserted] = map.emplace(name, i);
     if (!inserted && entry->second != i) entry->second = kSeveral;
   }
 
-  static int look_up(std::initializer_list<const Map*> maps, const std::string& name) {
-    for (const Map* map : maps) {
-      const auto found = map->find(name);
-      if (found != map->end() && found->second != kSeveral) return static_cast<int>(found->second);
-    }
-    return -1;
+  static int look_up(const Map& map, const std::string& name) {
+    const auto found = map.find(name);
+    return found != map.end() && found->second != kSeveral ? static_cast<int>(found->second) : -1;
+  }
+
+  int in_whole(std::string_view name) const {
+    const std::uint32_t found =
+        whole_.find(name, [&](std::size_t i) -> std::string_view { return materials_[i].name; });
+    return found == text::NameIndex::kNone ? -1 : static_cast<int>(found);
+  }
+
+  int whole_or_cut(std::string_view name) const {
+    const int found = in_whole(name);
+    return found >= 0 || cut_.empty() ? found : look_up(cut_, std::string(name));
   }
 
   const std::vector<Material>& materials_;
-  const Map& whole_;
+  const text::NameIndex& whole_;
   Map cut_, loose_;  // names cut at a '#' before a blank, and at any '#'
 };
 
@@ -145,19 +153,23 @@ bool ObjMaterials::library(const std::string& name, std::uint64_t line, std::vec
 }
 
 void ObjMaterials::add(Material material, std::uint64_t line) {
-  const auto [entry, inserted] = material_of_.emplace(material.name, materials_.size());
+  const auto [place, inserted] = material_of_.insert(
+      material.name, static_cast<std::uint32_t>(materials_.size()),
+      [&](std::size_t i) -> std::string_view { return i == materials_.size() ? material.name : materials_[i].name; });
   if (inserted) {
     materials_.push_back(std::move(material));
     return;
   }
   again_.add(line, material.name);
-  materials_[entry->second] = std::move(material);
+  materials_[place] = std::move(material);
 }
 
 std::uint32_t ObjMaterials::slot(std::string_view name, std::uint64_t line) {
-  const auto [entry, inserted] = slot_of_.emplace(name, static_cast<std::uint32_t>(slots_.size()));
-  if (inserted) slots_.push_back({std::string(name), line, false});
-  return entry->second;
+  const auto [place, inserted] = slot_of_.insert(name, static_cast<std::uint32_t>(slots_.size()), [&](std::size_t i) {
+    return i == slots_.size() ? name : slots_[i].name;
+  });
+  if (inserted) slots_.push_back({name, line, false});
+  return place;
 }
 
 void ObjMaterials::use(std::string_view name, std::uint64_t line) {
@@ -178,7 +190,7 @@ void ObjMaterials::finish(PolygonSoup& soup) {
   constexpr std::uint32_t kNone = ~0u;
   std::vector<std::uint32_t> place(slots_.size()), place_of_material(materials_.size(), kNone);
   std::unordered_map<std::string, std::uint32_t> place_of_other;
-  std::vector<Slot> unknown;
+  std::vector<Unknown> unknown;
   for (std::size_t i = 0; i < slots_.size(); ++i) {
     if (!slots_[i].used) continue;
     const auto next = static_cast<std::uint32_t>(soup.slots.size());
@@ -197,7 +209,7 @@ void ObjMaterials::finish(PolygonSoup& soup) {
     place[i] = entry->second;
     if (!inserted) continue;
     soup.slots.push_back(name);
-    if (!name.empty()) unknown.push_back({name, slots_[i].line, true});
+    if (!name.empty()) unknown.push_back({soup.slots.back(), slots_[i].line});
   }
   for (std::uint32_t& s : soup.face_slot) s = place[s];
   warn_of_unknown(unknown, soup.warnings);
@@ -210,12 +222,12 @@ void ObjMaterials::finish(PolygonSoup& soup) {
   soup.file_materials = std::move(materials_);
 }
 
-void ObjMaterials::warn_of_unknown(const std::vector<Slot>& unknown, std::vector<std::string>& warnings) const {
+void ObjMaterials::warn_of_unknown(const std::vector<Unknown>& unknown, std::vector<std::string>& warnings) const {
   // If no library could be read at all, a warning has already said so.
   const bool no_library = materials_.empty() && any_library_;
   std::size_t count = 0;
   Tally rest;
-  for (const Slot& slot : unknown) {
+  for (const Unknown& slot : unknown) {
     if (no_library && slot.name != kUnnamedMaterial) continue;
     const std::string text = slot.name == kUnnamedMaterial
                                  ? std::string("usemtl without a name")

@@ -6,10 +6,10 @@
 #include <set>
 #include <string>
 #include <string_view>
-#include <unordered_map>
 #include <vector>
 
 #include "scene/mesh/mesh_soup.hpp"
+#include "text/name_index.hpp"
 
 namespace clray {
 
@@ -29,22 +29,27 @@ class ObjMaterials {
 
  private:
   struct Slot {
-    std::string name;  // as the file writes it, comment included
+    std::string_view name;  // as the file writes it, comment included
     std::uint64_t line = 0;
     bool used = false;
+  };
+
+  struct Unknown {
+    std::string name;
+    std::uint64_t line = 0;
   };
 
   bool library(const std::string& name, std::uint64_t line, std::vector<std::string>& warnings);
   void add(Material material, std::uint64_t line);
   std::uint32_t slot(std::string_view name, std::uint64_t line);
-  void warn_of_unknown(const std::vector<Slot>& unknown, std::vector<std::string>& warnings) const;
+  void warn_of_unknown(const std::vector<Unknown>& unknown, std::vector<std::string>& warnings) const;
 
   const std::string& path_;
   std::vector<Slot> slots_;
-  std::unordered_map<std::string_view, std::uint32_t> slot_of_;  // by the words of the file, which outlives this
+  text::NameIndex slot_of_;
   int current_ = -1;
   std::vector<Material> materials_;
-  std::unordered_map<std::string, std::size_t> material_of_;
+  text::NameIndex material_of_;
   std::set<std::string> read_;  // canonical paths of the libraries
   Tally again_;
   bool any_library_ = false;
