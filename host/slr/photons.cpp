@@ -35,14 +35,17 @@ Ranges ranges_of(const Result& result, const Scene& scene, const RangeModel& mod
 std::vector<double> rates_of(const DelayResult& delay, const Station& station, double photons_per_m2) {
   const double photons = 4.0 * constants::kPi * photons_per_m2;
   const Histogram bins{delay.first_bin_start_s, delay.bin_width_s, delay.bin_m2_per_sr};
-  const PulseKernel kernel = pulse_kernel(station, delay.bin_width_s);
-  const Histogram smeared = convolve(bins, kernel);
+  const Histogram smeared = smear(bins, station);
+  // Its bins are finer by `cuts`, or each holds `merged` of ours.
+  const long cuts = std::max(1l, std::lround(delay.bin_width_s / smeared.width_s));
+  const long merged = std::max(1l, std::lround(smeared.width_s / delay.bin_width_s));
   const long shift = std::lround((delay.first_bin_start_s - smeared.first_s) / delay.bin_width_s);
-  const double per_ns = photons / (delay.bin_width_s * 1e9);
+  const double per_ns = photons / (delay.bin_width_s * 1e9 * static_cast<double>(merged));
   std::vector<double> rates(bins.mass.size(), 0.0);
   for (std::size_t i = 0; i < rates.size(); ++i) {
-    for (long cut = 0; cut < kernel.cuts; ++cut) {
-      const long from = (static_cast<long>(i) + shift) * kernel.cuts + cut;
+    for (long cut = 0; cut < cuts; ++cut) {
+      const long place = static_cast<long>(i) + shift;
+      const long from = place >= 0 ? (place / merged) * cuts + cut : -1;
       if (from >= 0 && from < static_cast<long>(smeared.mass.size()))
         rates[i] += smeared.mass[static_cast<std::size_t>(from)];
     }

@@ -15,6 +15,8 @@ namespace clray::slr {
 namespace {
 
 constexpr int kMostCuts = 64;
+constexpr double kMostPulseBins = 1 << 14;
+constexpr double kMostProducts = 0x1p31;  // a few seconds
 constexpr double kReach = 9.0;  // in sigma; 2e-19 of a Gaussian's energy lies beyond
 
 /// A power that is linear between its points.
@@ -198,6 +200,20 @@ Histogram convolve(const Histogram& in, const PulseKernel& kernel) {
     }
   }
   return out;
+}
+
+Histogram smear(const Histogram& in, const Station& station) {
+  const double length_s = station.pulse.empty() ? 2.0 * kReach * station.pulse_fwhm_s / kFwhmPerSigma
+                                                : station.pulse.back().first - station.pulse.front().first;
+  const double bins = length_s / in.width_s;  // of the pulse
+  const double products = bins * static_cast<double>(in.mass.size());
+  const auto factor =
+      static_cast<std::size_t>(std::ceil(std::max({1.0, bins / kMostPulseBins, std::sqrt(products / kMostProducts)})));
+  if (factor == 1) return convolve(in, pulse_kernel(station, in.width_s));
+  Histogram merged{in.first_s, in.width_s * static_cast<double>(factor), {}};
+  merged.mass.assign((in.mass.size() + factor - 1) / factor, 0.0);
+  for (std::size_t i = 0; i < in.mass.size(); ++i) merged.mass[i / factor] += in.mass[i];
+  return convolve(merged, pulse_kernel(station, merged.width_s));
 }
 
 }  // namespace clray::slr

@@ -40,6 +40,10 @@ PulseMoments pulse_moments(const Station& station);
 /// both ends. A delta changes no bit.
 Histogram convolve(const Histogram& histogram, const PulseKernel& kernel);
 
+/// The histogram convolved with the station's pulse. Where that would take more than 2^31 products, or a pulse of more
+/// than 2^14 bins, neighbouring bins are merged first: the pulse then still spans hundreds of them.
+Histogram smear(const Histogram& histogram, const Station& station);
+
 /// Sum of a histogram's masses, compensated (Neumaier 1974).
 double total(const std::vector<double>& mass);
 

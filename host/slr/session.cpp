@@ -138,7 +138,7 @@ std::uint64_t Session::first_shot_at(double since_s) const {
 
 Gate Session::gate_of(const DelayResult& delay) const {
   const Histogram histogram{delay.first_bin_start_s, delay.bin_width_s, delay.bin_m2_per_sr};
-  return make_gate(convolve(histogram, pulse_kernel(station_, delay.bin_width_s)), station_.gate_s);
+  return make_gate(smear(histogram, station_), station_.gate_s);
 }
 
 std::pair<double, double> Session::signal_window_ns() const {

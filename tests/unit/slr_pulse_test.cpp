@@ -140,6 +140,32 @@ TEST_CASE("photons per ns keep their bins and all energy that stays in the windo
   }
 }
 
+TEST_CASE("a pulse far longer than the bins: bounded work, the same energy and density") {
+  // A box of 1 us on bins of 1 fs has 10^9 of them; the histogram is one line among 4000 bins.
+  Station station = lit();
+  station.pulse = {{-0.5e-6, 1.0}, {0.5e-6, 1.0}};
+  DelayResult d = one_bin(0.0);
+  d.bin_width_s = 1e-15;
+  d.bin_m2_per_sr.assign(4000, 0.0);
+  d.bin_m2_per_sr[2000] = 2.0;
+  const double all = 2.0 * 4.0 * constants::kPi * link_budget(station, 532.0, 1e6).photons_per_m2;
+  const auto rates = photons_per_ns(d, station, 1e6);
+  REQUIRE(rates.size() == 4000);
+  // 1 us is 1000 ns. Merged bins are 1/16384 of the pulse: so much of it may stand one bin aside.
+  for (const double rate : rates) CHECK(rate == doctest::Approx(all / 1000.0).epsilon(1e-3));
+  station.pulse.clear();
+  station.pulse_fwhm_s = 1e-6;
+  const double peak = 2.0 * std::sqrt(std::log(2.0) / constants::kPi) / 1000.0;  // per ns, of a Gaussian
+  for (const double rate : photons_per_ns(d, station, 1e6)) CHECK(rate == doctest::Approx(all * peak).epsilon(1e-3));
+  const Histogram wide = smear({0.0, 1e-15, {1.0}}, station);
+  CHECK(total(wide.mass) == doctest::Approx(1.0).epsilon(1e-12));
+  CHECK(wide.mass.size() < 40000);
+  // Where nothing needs to be merged, it is the convolution to the last bit.
+  const Histogram before = body();
+  station.pulse_fwhm_s = 1e-10;
+  CHECK(smear(before, station).mass == convolve(before, pulse_kernel(station, before.width_s)).mass);
+}
+
 TEST_CASE("the link budget by hand") {
   // The paper's station; 1 m^2 at 1000 km. Each factor worked out apart from the code.
   const LinkBudget b = link_budget(lit(), 532.0, 1e6);
