@@ -5,8 +5,10 @@
 #include <fitsio.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "clray/error.hpp"
+#include "text/output_file.hpp"
 #include "text/text.hpp"
 
 namespace clray::io {
@@ -38,6 +40,7 @@ FitsFile::~FitsFile() {
     int ignored = 0;
     fits_close_file(handle(file_), &ignored);
   }
+  if (!whole_) discard_output_file(path_);
 }
 
 void FitsFile::check(const char* what) {
@@ -118,9 +121,17 @@ void FitsFile::history(const std::string& text) {
 }
 
 void FitsFile::close() {
+  LONGLONG header = 0, data = 0, end = 0;
+  fits_flush_file(handle(file_), &status_);
+  fits_get_hduaddrll(handle(file_), &header, &data, &end, &status_);
   fits_close_file(handle(file_), &status_);
   file_ = nullptr;
   check("write");
+  // cfitsio does not tell of the last bytes, which the system takes while the file is closed.
+  std::error_code error;
+  if (std::filesystem::file_size(path_, error) != static_cast<std::uintmax_t>(end) || error)
+    fail_output("write", path_, 0);
+  whole_ = true;
 }
 
 }  // namespace clray::io

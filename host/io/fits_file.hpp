@@ -46,6 +46,7 @@ class FitsFile {
   std::string path_;
   void* file_ = nullptr;  ///< fitsfile*; cfitsio's header stays out of ours
   int status_ = 0;
+  bool whole_ = false;  ///< closed without a fault
 };
 
 }  // namespace clray::io

@@ -11,13 +11,15 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <random>
 #include <set>
+#include <utility>
 
 #include "clray/error.hpp"
 #include "clray/result.hpp"
+#include "text/input_file.hpp"
+#include "text/output_file.hpp"
 #include "text/text.hpp"
 
 namespace clray::io {
@@ -25,11 +27,6 @@ namespace clray::io {
 using namespace text;
 
 namespace fs = std::filesystem;
-
-void fail_output(const std::string& what, const fs::path& path, int system_error) {
-  const std::string reason = system_error ? std::strerror(system_error) : "unknown reason (is the disk full?)";
-  throw Error(ErrorCode::output, "cannot " + what + " " + one_line(path.string()) + ": " + reason);
-}
 
 namespace {
 
@@ -40,8 +37,7 @@ namespace {
 
 /// Names that the result at `target` says it wrote.
 std::set<std::string> files_of_result(const fs::path& target) {
-  std::ifstream in(target / "summary.json", std::ios::binary);
-  const auto summary = nlohmann::json::parse(in, nullptr, false);
+  const auto summary = nlohmann::json::parse(read_input_file((target / "summary.json").string()), nullptr, false);
   if (!summary.is_object() || !summary.contains("clray")) refuse(target, "its summary.json is not of clray");
   std::set<std::string> names{"summary.json"};
   const auto files = summary.find("files");
@@ -72,6 +68,23 @@ void check_replaceable(const fs::path& target) {
   }
 }
 
+/// Throws where the system would not let us put another folder in place of `target`, though it may be a result.
+void check_movable(const fs::path& target) {
+  struct statx folder {
+  }, parent{};
+  if (::statx(AT_FDCWD, target.c_str(), 0, STATX_BASIC_STATS, &folder) != 0 || !S_ISDIR(folder.stx_mode)) return;
+  if (::statx(AT_FDCWD, target.parent_path().c_str(), 0, STATX_BASIC_STATS, &parent) != 0) return;
+  const bool other_disk = folder.stx_dev_major != parent.stx_dev_major || folder.stx_dev_minor != parent.stx_dev_minor;
+  if (other_disk || (folder.stx_attributes & STATX_ATTR_MOUNT_ROOT) != 0)
+    refuse(target, "a file system is mounted there");
+  const uid_t user = ::geteuid();
+  const bool sticky = (parent.stx_mode & S_ISVTX) != 0;
+  if (user != 0 && sticky && folder.stx_uid != user && parent.stx_uid != user)
+    refuse(target, "it belongs to somebody else, in a folder where only owners may move what is theirs");
+  if (::faccessat(AT_FDCWD, target.c_str(), R_OK | W_OK | X_OK, AT_EACCESS) != 0)
+    refuse(target, std::string("its files could not be removed (") + std::strerror(errno) + ")");
+}
+
 /// The absolute path without a trailing slash; a symbolic link is followed.
 fs::path resolve(const std::string& target) {
   if (target.empty()) throw Error(ErrorCode::output, "the output folder has an empty name");
@@ -79,9 +92,13 @@ fs::path resolve(const std::string& target) {
   fs::path path = fs::absolute(target, error).lexically_normal();
   if (error) fail_output("find", target, error.value());
   if (path.filename().empty()) path = path.parent_path();
-  if (fs::is_symlink(fs::symlink_status(path, error))) {
-    path = fs::weakly_canonical(path, error);
+  // Link by link, since a link may lead to a folder that is yet to be made.
+  for (int links = 0; fs::is_symlink(fs::symlink_status(path, error)); ++links) {
+    if (links == 40) fail_output("follow the link", target, ELOOP);
+    const fs::path next = fs::read_symlink(path, error);
     if (error) fail_output("follow the link", target, error.value());
+    path = (path.parent_path() / next).lexically_normal();
+    if (path.filename().empty()) path = path.parent_path();
   }
   return path;
 }
@@ -116,6 +133,7 @@ int exchange(const fs::path& temporary, const fs::path& target) {
 }  // namespace
 
 OutputFolder::OutputFolder(const std::string& target) : target_(resolve(target)) {
+  check_movable(target_);
   check_replaceable(target_);
   std::vector<fs::path> missing;
   std::error_code error;
@@ -165,6 +183,13 @@ void OutputFolder::remove_leftovers() noexcept {
   if (done_) return;
   for (auto parent = made_parents_.rbegin(); parent != made_parents_.rend(); ++parent) ::rmdir(parent->c_str());
   made_parents_.clear();
+}
+
+std::string OutputFolder::keep() noexcept {
+  std::error_code error;
+  if (temporary_.empty() || fs::is_empty(temporary_, error) || error) return {};
+  done_ = true;
+  return std::exchange(temporary_, fs::path()).string();
 }
 
 void OutputFolder::commit() {

@@ -9,10 +9,7 @@
 
 namespace clray::io {
 
-/// Errors of the operating system as Error(output) "cannot <what> <path>: <reason>".
-[[noreturn]] void fail_output(const std::string& what, const std::filesystem::path& path, int system_error);
-
-/// One folder being written. Removed with all it holds unless commit() has returned.
+/// One folder being written. Removed with all it holds unless commit() has returned or keep() was called.
 class OutputFolder {
  public:
   /// Makes the temporary folder beside `target`. Throws Error(output), also where something that is not a clray
@@ -28,6 +25,8 @@ class OutputFolder {
 
   /// Forces everything to disk and puts it in place. Throws Error(output); the old result is then still there.
   void commit();
+  /// Leaves what is written where it is, since it cannot be put in place. Returns the folder, or "" if it is empty.
+  std::string keep() noexcept;
 
  private:
   int make_temporary();

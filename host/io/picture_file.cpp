@@ -1,21 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pictures as PNG and EXR; see picture_file.hpp. libpng reports errors by longjmp: the function that calls it holds no
-// object with a destructor.
+// object with a destructor. Both are encoded in memory and then written with every error checked: OpenEXR writes a part
+// of its files in a destructor, which must swallow errors.
 #include "io/picture_file.hpp"
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
+#include <ImfIO.h>
 #include <ImfOutputFile.h>
 #include <ImfStringAttribute.h>
 #include <png.h>
 
-#include <cerrno>
+#include <algorithm>
 #include <csetjmp>
-#include <cstdio>
 
 #include "clray/error.hpp"
-#include "io/output_folder.hpp"
+#include "text/output_file.hpp"
 #include "text/text.hpp"
 
 namespace clray::io {
@@ -24,7 +25,16 @@ using namespace text;
 
 namespace {
 
-bool encode_png(std::FILE* file, int width, int height, png_bytep rows, char* description) {
+void append(png_structp png, png_bytep bytes, png_size_t count) {
+  auto* out = static_cast<std::string*>(png_get_io_ptr(png));
+  try {
+    out->append(reinterpret_cast<const char*>(bytes), count);
+  } catch (const std::exception&) {
+    png_error(png, "no memory");
+  }
+}
+
+bool encode_png(std::string* out, int width, int height, png_bytep rows, char* description) {
   png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
   if (!png) return false;
   png_infop info = png_create_info_struct(png);
@@ -33,7 +43,7 @@ bool encode_png(std::FILE* file, int width, int height, png_bytep rows, char* de
     return false;
   }
   png_set_user_limits(png, 1 << 20, 1 << 20);
-  png_init_io(png, file);
+  png_set_write_fn(png, out, append, nullptr);
   png_set_IHDR(png, info, static_cast<png_uint_32>(width), static_cast<png_uint_32>(height), 8,
                PNG_COLOR_TYPE_RGB_ALPHA, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
   png_set_sRGB_gAMA_and_cHRM(png, info, PNG_sRGB_INTENT_RELATIVE);
@@ -51,18 +61,32 @@ bool encode_png(std::FILE* file, int width, int height, png_bytep rows, char* de
   return true;
 }
 
+/// What OpenEXR writes, in memory.
+class MemoryStream : public Imf::OStream {
+ public:
+  explicit MemoryStream(const std::string& name) : Imf::OStream(name.c_str()) {}
+  void write(const char c[], int n) override {
+    const auto count = static_cast<std::size_t>(n);
+    if (at_ + count > bytes.size()) bytes.resize(at_ + count);
+    std::copy(c, c + n, bytes.begin() + static_cast<std::ptrdiff_t>(at_));
+    at_ += count;
+  }
+  std::uint64_t tellp() override { return at_; }
+  void seekp(std::uint64_t position) override { at_ = position; }
+
+  std::string bytes;
+
+ private:
+  std::size_t at_ = 0;
+};
+
 }  // namespace
 
 void write_png(const std::string& path, const Pixels& pixels, const std::string& description) {
-  errno = 0;
-  std::FILE* file = std::fopen(path.c_str(), "wb");
-  if (!file) fail_output("write", path, errno);
-  std::string text = ascii(description);
-  const bool encoded =
-      encode_png(file, pixels.width, pixels.height, const_cast<png_bytep>(pixels.rgba.data()), text.data());
-  const int code = errno;
-  const bool closed = std::fclose(file) == 0;
-  if (!encoded || !closed) fail_output("write", path, encoded ? errno : code);
+  std::string text = ascii(description), bytes;
+  if (!encode_png(&bytes, pixels.width, pixels.height, const_cast<png_bytep>(pixels.rgba.data()), text.data()))
+    throw Error(ErrorCode::output, "cannot encode " + one_line(path) + ": not enough memory");
+  write_output_file(path, bytes);
 }
 
 void write_exr(const std::string& path, int width, int height, const std::vector<Channel>& channels,
@@ -77,9 +101,15 @@ void write_exr(const std::string& path, int width, int height, const std::vector
                     Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(const_cast<float*>(channel.values.data())),
                                sizeof(float), sizeof(float) * static_cast<std::size_t>(width)));
     }
-    Imf::OutputFile file(path.c_str(), header);
-    file.setFrameBuffer(buffer);
-    file.writePixels(height);
+    MemoryStream stream(path);
+    {
+      Imf::OutputFile file(stream, header);
+      file.setFrameBuffer(buffer);
+      file.writePixels(height);
+    }  // writes the table of lines, and would swallow a fault of the disk
+    write_output_file(path, stream.bytes);
+  } catch (const Error&) {
+    throw;
   } catch (const std::exception& error) {
     throw Error(ErrorCode::output, "cannot write " + one_line(path) + ": " + error.what());
   }

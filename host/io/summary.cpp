@@ -3,7 +3,6 @@
 // are keyed by detector, then observer and variant where there are several; units are in the names.
 #include <cerrno>
 #include <cmath>
-#include <fstream>
 #include <set>
 
 #include "clray/error.hpp"
@@ -150,11 +149,7 @@ void write_summary(Writer& writer, const std::vector<MoreFiles>& more) {
   const std::string name = writer.add("summary", "json");
   summary["warnings"] = warnings_of(writer);
   summary["files"] = writer.files;
-  errno = 0;
-  std::ofstream file(writer.folder.path(name), std::ios::binary);
-  file << summary.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
-  file.close();
-  if (!file) fail_output("write", writer.folder.path(name), errno);
+  write_output_file(writer.folder.path(name), summary.dump(2, ' ', false, Json::error_handler_t::replace) + '\n');
 }
 
 }  // namespace clray::io

@@ -2,9 +2,6 @@
 // A CSV file with its '#' lines; see table_file.hpp. Quoting as RFC 4180; text cells are kept on one line.
 #include "io/table_file.hpp"
 
-#include <cerrno>
-
-#include "io/output_folder.hpp"
 #include "text/text.hpp"
 
 namespace clray::io {
@@ -13,10 +10,7 @@ using namespace text;
 
 TableFile::TableFile(const std::string& path, const Result& result, const Scene& scene, const std::string& what,
                      const std::string& units)
-    : path_(path) {
-  errno = 0;
-  file_ = std::fopen(path.c_str(), "wb");
-  if (!file_) fail_output("write", path, errno);
+    : file_(path) {
   comment("what: " + what);
   comment("units: " + units);
   comment("scene: " + (scene.path.empty() ? scene.name : scene.path));
@@ -25,17 +19,8 @@ TableFile::TableFile(const std::string& path, const Result& result, const Scene&
   comment("clray: " CLRAY_VERSION);
 }
 
-TableFile::~TableFile() {
-  if (file_) std::fclose(file_);
-}
-
-void TableFile::put(std::string_view text) {
-  errno = 0;
-  if (std::fwrite(text.data(), 1, text.size(), file_) != text.size()) fail_output("write", path_, errno);
-}
-
 void TableFile::comment(std::string_view text) {
-  put("# " + one_line(text) + "\n");
+  file_.put("# " + one_line(text) + "\n");
 }
 
 void TableFile::columns(const std::vector<std::string>& names) {
@@ -70,15 +55,12 @@ TableFile& TableFile::cell(std::string_view text) {
 
 void TableFile::end_row() {
   row_.back() = '\n';
-  put(row_);
+  file_.put(row_);
   row_.clear();
 }
 
 void TableFile::close() {
-  errno = 0;
-  const bool failed = std::fclose(file_) != 0;
-  file_ = nullptr;
-  if (failed) fail_output("write", path_, errno);
+  file_.close();
 }
 
 }  // namespace clray::io

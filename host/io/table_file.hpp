@@ -3,23 +3,22 @@
 #pragma once
 
 #include <cstdint>
-#include <cstdio>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "clray/result.hpp"
+#include "text/output_file.hpp"
 
 namespace clray::io {
+
+using namespace text;
 
 /// One table being written; errors are thrown as Error(output) at the latest by close().
 class TableFile {
  public:
   TableFile(const std::string& path, const Result& result, const Scene& scene, const std::string& what,
             const std::string& units);
-  ~TableFile();
-  TableFile(const TableFile&) = delete;
-  TableFile& operator=(const TableFile&) = delete;
 
   /// One more '#' line; only before columns().
   void comment(std::string_view text);
@@ -33,10 +32,8 @@ class TableFile {
   void close();
 
  private:
-  void put(std::string_view text);
-
-  std::string path_, row_;
-  std::FILE* file_ = nullptr;
+  OutputFile file_;
+  std::string row_;
 };
 
 }  // namespace clray::io

@@ -66,6 +66,12 @@ std::string Writer::title(const std::string& kind, const ResultKey& key) const {
   return title;
 }
 
+/// Words for an error: tracing may have taken hours, so what is written stays.
+std::string kept_in(OutputFolder& place) {
+  const std::string folder = place.keep();
+  return folder.empty() ? "" : "; the files that were finished are in " + one_line(folder);
+}
+
 TimeUnit readable_time_unit(double seconds) {
   constexpr TimeUnit kUnits[] = {{1.0, "s"}, {1e3, "ms"}, {1e6, "µs"}, {1e9, "ns"}, {1e12, "ps"}, {1e15, "fs"}};
   if (!(seconds > 0.0)) return kUnits[3];
@@ -104,12 +110,13 @@ std::vector<std::string> write_result(const Result& result, const Scene& scene, 
     }
     io::write_summary(writer, more);
     place.commit();
-  } catch (const Error&) {
-    throw;
+  } catch (const Error& error) {
+    throw Error(error.code(), error.message() + io::kept_in(place), error.context());
   } catch (const std::bad_alloc&) {
-    throw;
+    throw Error(ErrorCode::output, "cannot write the result: not enough memory" + io::kept_in(place), folder);
   } catch (const std::exception& error) {
-    throw Error(ErrorCode::output, std::string("cannot write the result: ") + error.what(), folder);
+    throw Error(ErrorCode::output, std::string("cannot write the result: ") + error.what() + io::kept_in(place),
+                folder);
   }
   if (options.warnings)
     options.warnings->insert(options.warnings->end(), writer.warnings.begin(), writer.warnings.end());

@@ -17,7 +17,7 @@ namespace {
 constexpr int kMostCuts = 64;
 constexpr double kMostPulseBins = 1 << 14;
 constexpr double kMostProducts = 0x1p31;  // a few seconds
-constexpr double kReach = 9.0;  // in sigma; 2e-19 of a Gaussian's energy lies beyond
+constexpr double kReach = 9.0;            // in sigma; 2e-19 of a Gaussian's energy lies beyond
 
 /// A power that is linear between its points.
 using Table = std::vector<std::pair<double, double>>;

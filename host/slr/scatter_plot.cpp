@@ -10,6 +10,7 @@
 #include <cstdio>
 
 #include "text/gnuplot.hpp"
+#include "text/output_file.hpp"
 
 namespace clray::slr {
 
@@ -17,13 +18,6 @@ namespace {
 
 // The plotting area of the picture, in its pixels: a cell of the grid is a pixel.
 constexpr int kWidth = 1026, kHeight = 604;
-
-bool write_file(const std::string& path, const void* data, std::size_t size) {
-  std::FILE* file = std::fopen(path.c_str(), "wb");
-  if (!file) return false;
-  const bool written = std::fwrite(data, 1, size, file) == size;
-  return std::fclose(file) == 0 && written;
-}
 
 text::Plot plot_of(const std::string& file, const std::string& image, const std::string& title,
                    const std::string& time_label, double start_s, double stop_s, double low_ns, double high_ns) {
@@ -99,12 +93,11 @@ std::vector<std::uint8_t> ScatterPlot::pixels() const {
 std::string ScatterPlot::draw(const std::string& folder, const std::string& file, const std::string& title) const {
   const std::string image = file + ".rgba", directory = folder.empty() ? "." : folder;
   const auto rgba = pixels();
+  text::write_output_file(directory + "/" + image, {reinterpret_cast<const char*>(rgba.data()), rgba.size()});
   const std::string fault =
-      write_file(directory + "/" + image, rgba.data(), rgba.size())
-          ? plot_of(file, image, title, time_label_, origin_s_ + start_s_, origin_s_ + stop_s_, low_ns_, high_ns_)
-                .draw(directory)
-          : "no " + file + ": cannot write a temporary file";
-  std::remove((directory + "/" + image).c_str());
+      plot_of(file, image, title, time_label_, origin_s_ + start_s_, origin_s_ + stop_s_, low_ns_, high_ns_)
+          .draw(directory);
+  text::discard_output_file(directory + "/" + image);
   return fault;
 }
 

@@ -2,30 +2,16 @@
 // Buffered text; see text_file.hpp.
 #include "slr/text_file.hpp"
 
-#include <cerrno>
-#include <cstring>
-
-#include "clray/error.hpp"
-
 namespace clray::slr {
 
 namespace {
 
 constexpr std::size_t kPiece = 1u << 18;
 
-[[noreturn]] void fail(const std::string& path) {
-  throw Error(ErrorCode::output, std::string("cannot be written: ") + std::strerror(errno), path);
-}
-
 }  // namespace
 
-TextFile::TextFile(const std::string& path) : path_(path), file_(std::fopen(path.c_str(), "wb")) {
-  if (!file_) fail(path_);
+TextFile::TextFile(const std::string& path) : file_(path) {
   buffer_.reserve(kPiece + 512);
-}
-
-TextFile::~TextFile() {
-  if (file_) std::fclose(file_);
 }
 
 TextFile& TextFile::text(std::string_view text) {
@@ -69,15 +55,13 @@ TextFile& TextFile::end_line() {
 }
 
 void TextFile::flush() {
-  if (std::fwrite(buffer_.data(), 1, buffer_.size(), file_) != buffer_.size()) fail(path_);
+  file_.put(buffer_);
   buffer_.clear();
 }
 
 void TextFile::close() {
   flush();
-  std::FILE* file = file_;
-  file_ = nullptr;
-  if (std::fclose(file) != 0) fail(path_);
+  file_.close();
 }
 
 }  // namespace clray::slr

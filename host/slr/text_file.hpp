@@ -4,9 +4,10 @@
 #pragma once
 
 #include <cstdint>
-#include <cstdio>
 #include <string>
 #include <string_view>
+
+#include "text/output_file.hpp"
 
 namespace clray::slr {
 
@@ -14,9 +15,6 @@ class TextFile {
  public:
   /// Throws Error(output) where the file cannot be made.
   explicit TextFile(const std::string& path);
-  ~TextFile();
-  TextFile(const TextFile&) = delete;
-  TextFile& operator=(const TextFile&) = delete;
 
   TextFile& text(std::string_view text);
   /// `value`·10^-decimals, decimals 1 … 18.
@@ -31,8 +29,8 @@ class TextFile {
  private:
   void flush();
 
-  std::string path_, buffer_;
-  std::FILE* file_ = nullptr;
+  text::OutputFile file_;
+  std::string buffer_;
 };
 
 }  // namespace clray::slr

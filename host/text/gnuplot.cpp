@@ -6,7 +6,6 @@
 
 #include <fcntl.h>
 #include <spawn.h>
-#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -102,6 +101,16 @@ std::vector<char*> environment(std::string& locale) {
   return variables;
 }
 
+/// Whether a file ends as every PNG does (ISO/IEC 15948: an empty chunk IEND with its checksum). gnuplot does not tell
+/// of a full disk.
+bool is_whole_png(const std::string& path) {
+  const TemporaryFile file(std::fopen(path.c_str(), "rb"));
+  char end[12];
+  return file && std::fseek(file.get(), -12, SEEK_END) == 0 &&
+         std::fread(end, 1, sizeof end, file.get()) == sizeof end &&
+         std::memcmp(end, "\0\0\0\0IEND\xae\x42\x60\x82", sizeof end) == 0;
+}
+
 }  // namespace
 
 std::string Plot::draw(const std::string& folder) const {
@@ -135,13 +144,13 @@ std::string Plot::draw(const std::string& folder) const {
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
   const std::string path = folder + "/" + file_;
-  struct stat information {};
-  const bool drawn = ::stat(path.c_str(), &information) == 0 && information.st_size > 0;
+  const bool drawn = is_whole_png(path);
   if (status == 0 && drawn) return {};
   ::unlink(path.c_str());
   if (WIFEXITED(status) && WEXITSTATUS(status) == 127)
     return "no " + file_ + ": gnuplot is not installed (package gnuplot-nox)";
-  return "no " + file_ + ": gnuplot failed: " + first_words(complaints.get());
+  const std::string words = first_words(complaints.get());
+  return "no " + file_ + ": gnuplot failed: " + (words.empty() ? "the picture is cut off (is the disk full?)" : words);
 }
 
 }  // namespace clray::text

@@ -70,11 +70,62 @@ TEST_CASE("the old result survives a failing new one") {
   write(scratch / "out", 1);
   WriteOptions failing = no_plots();
   failing.more.push_back([](const std::string&) -> MoreFiles { throw std::runtime_error("planted"); });
-  CHECK_THROWS_AS(write(scratch / "out", 2, failing), Error);
+  std::string message;
+  try {
+    write(scratch / "out", 2, failing);
+  } catch (const Error& error) {
+    message = error.what();
+    CHECK(error.code() == ErrorCode::output);
+  }
   CHECK(has(slurp(scratch / "out/summary.json"), "0000000000000001"));
-  CHECK(scratch.entries() == 1);
+  // What was traced is not lost: the finished files are beside it, and the message says where.
+  REQUIRE(scratch.entries() == 2);
+  const std::string words = "planted; the files that were finished are in ";
+  REQUIRE(has(message, words));
+  const fs::path kept = message.substr(message.find(words) + words.size());
+  CHECK(has(slurp(kept / "delay.csv"), "0000000000000002"));
+  CHECK_FALSE(fs::exists(kept / "summary.json"));
   CHECK_THROWS_AS(write(scratch / "new/deep/er", 2, failing), Error);
-  CHECK_FALSE(fs::exists(scratch / "new"));
+  CHECK(std::distance(fs::directory_iterator(scratch / "new/deep"), {}) == 1);
+}
+
+TEST_CASE("a folder that could not be replaced is refused before tracing") {
+  Scratch scratch;
+  CHECK_THROWS_WITH_AS(check_output("/proc"), doctest::Contains("a file system is mounted there"), Error);
+  // Somebody else's result in a folder where only owners may move things, as /tmp is.
+  const bool root = ::geteuid() == 0;
+  if (root) {
+    fs::create_directory(scratch / "shared");
+    REQUIRE(::chmod((scratch / "shared").c_str(), 01777) == 0);
+    REQUIRE(::chmod(scratch.path.c_str(), 0755) == 0);
+    write(scratch / "shared/theirs", 1);
+    fs::create_directory(scratch / "shared/locked");
+    REQUIRE(::chown((scratch / "shared/locked").c_str(), 65534, 65534) == 0);
+    REQUIRE(::chmod((scratch / "shared/locked").c_str(), 0500) == 0);
+    REQUIRE(::seteuid(65534) == 0);
+    std::string theirs, locked;
+    try {
+      check_output(scratch / "shared/theirs");
+    } catch (const Error& error) {
+      theirs = error.what();
+    }
+    try {
+      check_output(scratch / "shared/locked");
+    } catch (const Error& error) {
+      locked = error.what();
+    }
+    REQUIRE(::seteuid(0) == 0);
+    CHECK(has(theirs, "it belongs to somebody else"));
+    CHECK(has(locked, "its files could not be removed (Permission denied)"));
+  }
+  fs::create_symlink(scratch / "nowhere/deep", scratch / "link");
+  check_output(scratch / "link");  // a dangling link is followed: the result is made where it leads
+  write(scratch / "link", 3);
+  CHECK(has(slurp(scratch / "nowhere/deep/summary.json"), "0000000000000003"));
+  fs::create_symlink("loop", scratch / "loop");
+  CHECK_THROWS_AS(check_output(scratch / "loop"), Error);
+  fs::create_symlink(scratch / "absent", scratch / "parent");
+  CHECK_THROWS_AS(check_output(scratch / "parent/out"), Error);
 }
 
 TEST_CASE("what is no result of clray is not touched") {

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// Writes the files of a result. A file is whole or it is not there: every write and the closing are checked, and a file
+// that was not closed without a fault is removed.
+#pragma once
+
+#include <cstdio>
+#include <string>
+#include <string_view>
+
+namespace clray::text {
+
+/// Errors of the operating system as Error(output) "cannot <what> <path>: <reason>".
+[[noreturn]] void fail_output(const std::string& what, const std::string& path, int system_error);
+
+/// A file being written. All members throw Error(output).
+class OutputFile {
+ public:
+  explicit OutputFile(const std::string& path);
+  ~OutputFile();
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+
+  void put(std::string_view bytes);
+  void close();
+
+ private:
+  std::string path_;
+  std::FILE* file_ = nullptr;
+};
+
+/// A file of these bytes. Throws Error(output).
+void write_output_file(const std::string& path, std::string_view bytes);
+
+/// Removes a file that a library left unfinished.
+void discard_output_file(const std::string& path) noexcept;
+
+}  // namespace clray::text
