@@ -20,6 +20,7 @@
 #include "clray/session.hpp"
 #include "environment.hpp"
 #include "report.hpp"
+#include "text/text.hpp"
 
 namespace {
 
@@ -54,7 +55,7 @@ class Warnings {
  public:
   void show(const std::vector<std::string>& texts) {
     for (const auto& text : texts) {
-      if (seen_.insert(text).second) std::fprintf(stderr, "clray: warning: %s\n", text.c_str());
+      if (seen_.insert(text).second) std::fprintf(stderr, "clray: warning: %s\n", text::shown(text).c_str());
     }
   }
 
@@ -63,7 +64,8 @@ class Warnings {
 };
 
 void print(const std::string& text) {
-  std::fwrite(text.data(), 1, text.size(), stdout);
+  const std::string shown = text::shown_lines(text);
+  std::fwrite(shown.data(), 1, shown.size(), stdout);
 }
 
 void flush_output() {
@@ -192,13 +194,16 @@ int main(int argc, char** argv) {
     return status;
   } catch (const Error& error) {
     std::fflush(stdout);
-    std::fprintf(stderr, "clray: %s\n", error.what());
+    // A driver's words may have several lines.
+    const bool lines = error.code() == ErrorCode::device || error.code() == ErrorCode::bug;
+    std::fprintf(stderr, "clray: %s\n", (lines ? text::shown_lines(error.what()) : text::shown(error.what())).c_str());
     return static_cast<int>(error.code());
   } catch (const std::bad_alloc&) {
     std::fputs("clray: not enough memory for this scene\n", stderr);
     return static_cast<int>(ErrorCode::input);
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "clray: this is a fault of clray, please report it: %s\n", error.what());
+    std::fprintf(stderr, "clray: this is a fault of clray, please report it: %s\n",
+                 text::shown_lines(error.what()).c_str());
     return static_cast<int>(ErrorCode::bug);
   }
 }

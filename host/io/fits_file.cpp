@@ -48,7 +48,7 @@ void FitsFile::check(const char* what) {
   char reason[FLEN_STATUS];
   fits_get_errstatus(status_, reason);
   fits_clear_errmsg();
-  throw Error(ErrorCode::output, std::string("cannot ") + what + " " + one_line(path_) + ": " + reason);
+  throw Error(ErrorCode::output, std::string("cannot ") + what + " " + shown(path_) + ": " + reason);
 }
 
 void FitsFile::image(const std::string& name, const std::string& unit, const std::vector<FitsAxis>& axes,

@@ -32,7 +32,7 @@ namespace {
 
 [[noreturn]] void refuse(const fs::path& target, const std::string& why) {
   throw Error(ErrorCode::output,
-              "will not replace " + one_line(target.string()) + ": " + why + "; choose another --out or move it away");
+              "will not replace " + shown(target.string()) + ": " + why + "; choose another --out or move it away");
 }
 
 /// Names that the result at `target` says it wrote.
@@ -64,7 +64,7 @@ void check_replaceable(const fs::path& target) {
   const auto known = files_of_result(target);
   for (const auto& entry : entries) {
     const std::string name = entry.path().filename().string();
-    if (known.count(name) == 0) refuse(target, "it holds '" + one_line(name) + "', which clray did not write");
+    if (known.count(name) == 0) refuse(target, "it holds '" + shown(name) + "', which clray did not write");
   }
 }
 

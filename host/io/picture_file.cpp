@@ -85,7 +85,7 @@ class MemoryStream : public Imf::OStream {
 void write_png(const std::string& path, const Pixels& pixels, const std::string& description) {
   std::string text = ascii(description), bytes;
   if (!encode_png(&bytes, pixels.width, pixels.height, const_cast<png_bytep>(pixels.rgba.data()), text.data()))
-    throw Error(ErrorCode::output, "cannot encode " + one_line(path) + ": not enough memory");
+    throw Error(ErrorCode::output, "cannot encode " + shown(path) + ": not enough memory");
   write_output_file(path, bytes);
 }
 
@@ -93,7 +93,7 @@ void write_exr(const std::string& path, int width, int height, const std::vector
                const std::string& description) {
   try {
     Imf::Header header(width, height);
-    header.insert("comments", Imf::StringAttribute(one_line(description)));
+    header.insert("comments", Imf::StringAttribute(shown(description)));
     Imf::FrameBuffer buffer;
     for (const auto& channel : channels) {
       header.channels().insert(channel.name, Imf::Channel(Imf::FLOAT));
@@ -111,7 +111,7 @@ void write_exr(const std::string& path, int width, int height, const std::vector
   } catch (const Error&) {
     throw;
   } catch (const std::exception& error) {
-    throw Error(ErrorCode::output, "cannot write " + one_line(path) + ": " + error.what());
+    throw Error(ErrorCode::output, "cannot write " + shown(path) + ": " + error.what());
   }
 }
 

@@ -149,7 +149,8 @@ void write_summary(Writer& writer, const std::vector<MoreFiles>& more) {
   const std::string name = writer.add("summary", "json");
   summary["warnings"] = warnings_of(writer);
   summary["files"] = writer.files;
-  write_output_file(writer.folder.path(name), summary.dump(2, ' ', false, Json::error_handler_t::replace) + '\n');
+  write_output_file(writer.folder.path(name),
+                    shown_json(summary.dump(2, ' ', false, Json::error_handler_t::replace)) + '\n');
 }
 
 }  // namespace clray::io

@@ -53,20 +53,20 @@ class SummaryEntries {
     for (const auto* record : group) {
       const ResultKey& key = record->key;
       if (several) {
-        Json& list = key.band.empty() ? place["orientations"] : place["bands"][one_line(key.band)]["orientations"];
+        Json& list = key.band.empty() ? place["orientations"] : place["bands"][shown(key.band)]["orientations"];
         Json& numbered = list[listed[key.band]++];
         put(numbered, {{"orientation", key.orientation}, {"time_s", time_of(writer.result, key)}});
         put(numbered, entry(*record));
       } else {
-        put(key.band.empty() ? place : place["bands"][one_line(key.band)], entry(*record));
+        put(key.band.empty() ? place : place["bands"][shown(key.band)], entry(*record));
       }
     }
   }
 
   Json& place_of(const ResultKey& key) {
-    Json* place = &detectors[one_line(key.detector)];
-    if (!key.observer.empty()) place = &(*place)[one_line(key.observer)];
-    if (!key.variant.empty()) place = &(*place)[one_line(key.variant)];
+    Json* place = &detectors[shown(key.detector)];
+    if (!key.observer.empty()) place = &(*place)[shown(key.observer)];
+    if (!key.variant.empty()) place = &(*place)[shown(key.variant)];
     return *place;
   }
 

@@ -20,7 +20,7 @@ TableFile::TableFile(const std::string& path, const Result& result, const Scene&
 }
 
 void TableFile::comment(std::string_view text) {
-  file_.put("# " + one_line(text) + "\n");
+  file_.put("# " + shown(text) + "\n");
 }
 
 void TableFile::columns(const std::vector<std::string>& names) {
@@ -41,7 +41,7 @@ TableFile& TableFile::cell(std::uint64_t value) {
 }
 
 TableFile& TableFile::cell(std::string_view text) {
-  const std::string line = one_line(text);
+  const std::string line = shown(text);
   if (line.find_first_of(",\"") == std::string::npos) {
     row_ += line;
   } else {

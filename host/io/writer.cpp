@@ -69,7 +69,7 @@ std::string Writer::title(const std::string& kind, const ResultKey& key) const {
 /// Words for an error: tracing may have taken hours, so what is written stays.
 std::string kept_in(OutputFolder& place) {
   const std::string folder = place.keep();
-  return folder.empty() ? "" : "; the files that were finished are in " + one_line(folder);
+  return folder.empty() ? "" : "; the files that were finished are in " + shown(folder);
 }
 
 TimeUnit readable_time_unit(double seconds) {

@@ -160,9 +160,9 @@ std::string describe_scene(const Scene& scene) {
     lines.add({"detector", what});
   }
   lines.add({"trace", key_text(scene.trace)});
-  std::string text =
-      fmt::format("scene {}\n{}{}", scene.path.empty() ? scene.name : scene.path, body_text(scene), lines.text(""));
-  for (const std::string& warning : scene.warnings) text += "warning: " + warning + "\n";
+  std::string text = fmt::format("scene {}\n{}{}", text::shown(scene.path.empty() ? scene.name : scene.path),
+                                 body_text(scene), lines.text(""));
+  for (const std::string& warning : scene.warnings) text += "warning: " + text::shown(warning) + "\n";
   return text;
 }
 

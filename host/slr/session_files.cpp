@@ -74,7 +74,7 @@ void csv_head(TextFile* csv, const Result& result, const Scene& scene, const Ses
   csv->text("# epoch_s: time of fire, s after MJD ").text(std::to_string(zero.mjd)).text(" UTC + ");
   csv->decimal(zero.ps, 12).text(" s; flight_time_s: two-way; residual_ns: flight time minus 2 range/c\n");
   csv->text(fmt::format("# scene {}, seed {}, digest {:016x}, shots {} at {} Hz\n",
-                        text::one_line(scene.path.empty() ? scene.name : scene.path), result.seed, result.digest,
+                        text::shown(scene.path.empty() ? scene.name : scene.path), result.seed, result.digest,
                         session.shots(), scene.station->rate_Hz));
   csv->text("epoch_s,flight_time_s,residual_ns,kind\n");
 }

@@ -4,10 +4,17 @@
 
 #include <algorithm>
 
+#include "text/text.hpp"
+
 namespace clray::text {
 
 std::size_t characters(const std::string& text) {
   return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xc0) != 0x80; }));
+}
+
+void Columns::add(std::vector<std::string> cells) {
+  for (std::string& cell : cells) cell = shown(cell);
+  rows_.push_back(std::move(cells));
 }
 
 std::string Columns::text(const std::string& indent) const {

@@ -14,7 +14,8 @@ std::size_t characters(const std::string& text);
 /// Lines of cells, every column as wide as its widest cell, two spaces between.
 class Columns {
  public:
-  void add(std::vector<std::string> cells) { rows_.push_back(std::move(cells)); }
+  /// Cells are escaped as shown() does.
+  void add(std::vector<std::string> cells);
   /// The lines, each after `indent`, without spaces at their ends.
   std::string text(const std::string& indent) const;
 

@@ -27,9 +27,25 @@ std::uint32_t folded(std::uint32_t c) {
   return c;
 }
 
+/// Hidden characters and bytes that are not UTF-8 become blanks, which no name keeps.
+std::string cleaned(std::string_view text) {
+  std::string clean;
+  for (std::size_t i = 0; i < text.size();) {
+    std::uint32_t c = 0;
+    const std::size_t length = decode_utf8(text, i, &c);
+    if (is_hidden(c) || (length == 1 && c >= 0x80)) {
+      clean += ' ';
+    } else {
+      clean.append(text.substr(i, length));
+    }
+    i += length;
+  }
+  return clean;
+}
+
 /// A key that is equal for names that differ in case alone.
 std::string without_case(std::string_view text) {
-  const std::string clean = one_line(text);
+  const std::string clean = cleaned(text);
   std::string key;
   for (std::size_t i = 0; i < clean.size();) {
     std::uint32_t c = 0;
@@ -43,7 +59,7 @@ std::string without_case(std::string_view text) {
 }  // namespace
 
 std::string file_name_part(std::string_view text) {
-  const std::string clean = one_line(text);
+  const std::string clean = cleaned(text);
   std::string part;
   for (std::size_t i = 0; i < clean.size();) {
     std::uint32_t c = 0;

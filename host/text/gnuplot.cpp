@@ -23,7 +23,7 @@ namespace clray::text {
 
 std::string gnuplot_text(std::string_view text) {
   std::string literal = "'";
-  for (const char c : one_line(text)) literal.append(c == '\'' ? 2 : 1, c);
+  for (const char c : shown(text)) literal.append(c == '\'' ? 2 : 1, c);
   // "noenhanced" after a literal keeps '_' and '^' of users' names from becoming subscripts.
   return literal + "' noenhanced";
 }
@@ -87,7 +87,7 @@ std::string first_words(std::FILE* file) {
   std::rewind(file);
   char buffer[300];
   const std::size_t n = std::fread(buffer, 1, sizeof buffer, file);
-  return one_line(std::string_view(buffer, n));
+  return shown(std::string_view(buffer, n));
 }
 
 /// Our environment with LC_ALL=C.UTF-8, so that numbers keep their point and titles their letters.

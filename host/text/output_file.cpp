@@ -14,7 +14,7 @@ namespace clray::text {
 
 void fail_output(const std::string& what, const std::string& path, int system_error) {
   const std::string reason = system_error ? std::strerror(system_error) : "unknown reason (is the disk full?)";
-  throw Error(ErrorCode::output, "cannot " + what + " " + one_line(path) + ": " + reason);
+  throw Error(ErrorCode::output, "cannot " + what + " " + shown(path) + ": " + reason);
 }
 
 OutputFile::OutputFile(const std::string& path) : path_(path) {

@@ -51,26 +51,6 @@ std::string rounded(double value, int digits) {
   return std::isfinite(value) ? chars(value, std::chars_format::general, digits) : number(value);
 }
 
-std::string one_line(std::string_view text) {
-  std::string line;
-  for (std::size_t i = 0; i < text.size();) {
-    const std::size_t length = utf8_length(text, i);
-    const unsigned char c = static_cast<unsigned char>(text[i]);
-    if (length == 0) {
-      line += '?';
-      ++i;
-      continue;
-    }
-    if (length == 1) {
-      line += c < 0x20 || c == 0x7f ? ' ' : text[i];
-    } else {
-      line.append(text.substr(i, length));
-    }
-    i += length;
-  }
-  return line;
-}
-
 std::size_t decode_utf8(std::string_view text, std::size_t i, std::uint32_t* character) {
   const std::size_t length = utf8_length(text, i);
   const auto byte = [&](std::size_t k) { return static_cast<std::uint32_t>(static_cast<unsigned char>(text[k])); };
@@ -81,6 +61,52 @@ std::size_t decode_utf8(std::string_view text, std::size_t i, std::uint32_t* cha
   *character = byte(i) & (0xffu >> (length + 1));
   for (std::size_t k = 1; k < length; ++k) *character = *character << 6 | (byte(i + k) & 0x3f);
   return length;
+}
+
+bool is_hidden(std::uint32_t c) {
+  return c < 0x20 || (c >= 0x7f && c < 0xa0) || (c >= 0x200e && c <= 0x200f) || (c >= 0x2028 && c <= 0x202e) ||
+         (c >= 0x2066 && c <= 0x2069) || c == 0x61c || c == 0xfeff;
+}
+
+namespace {
+
+template <class Keep, class Escape>
+std::string escaped(std::string_view text, const Keep& keep, const Escape& escape) {
+  std::string line;
+  for (std::size_t i = 0; i < text.size();) {
+    std::uint32_t c = 0;
+    const std::size_t length = decode_utf8(text, i, &c);
+    const bool broken = length == 1 && c >= 0x80;
+    if (!broken && (!is_hidden(c) || keep(c))) {
+      line.append(text.substr(i, length));
+    } else {
+      line += escape(c, broken);
+    }
+    i += length;
+  }
+  return line;
+}
+
+std::string escape_for_eyes(std::uint32_t c, bool) {
+  return c < 0x100 ? "\\x" + hex16(c).substr(14) : "\\u" + hex16(c).substr(12);
+}
+
+}  // namespace
+
+std::string shown(std::string_view text) {
+  return escaped(
+      text, [](std::uint32_t) { return false; }, escape_for_eyes);
+}
+
+std::string shown_lines(std::string_view text) {
+  return escaped(
+      text, [](std::uint32_t c) { return c == '\n' || c == '\t'; }, escape_for_eyes);
+}
+
+std::string shown_json(std::string_view json) {
+  return escaped(
+      json, [](std::uint32_t c) { return c == '\n'; },
+      [](std::uint32_t c, bool broken) { return "\\u" + (broken ? std::string("fffd") : hex16(c).substr(12)); });
 }
 
 std::string ascii(std::string_view text) {

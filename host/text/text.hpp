@@ -16,8 +16,19 @@ std::string number(double value);
 /// `digits` significant digits, for titles and labels.
 std::string rounded(double value, int digits);
 
-/// Control characters become spaces, bytes that are not UTF-8 become '?'.
-std::string one_line(std::string_view text);
+/// Whether a character does something in a terminal or to the order of letters instead of being seen: controls (C0,
+/// DEL, C1), marks of the direction of writing, separators of lines and paragraphs.
+bool is_hidden(std::uint32_t character);
+
+/// Text of users and files as it is shown: in a terminal, a head of a file, a title. One line: hidden characters are
+/// written as \x1b or \u202e, bytes that are not UTF-8 as \xff. Escaping twice changes nothing more.
+std::string shown(std::string_view text);
+
+/// The same for texts of several lines: line ends and tabs are kept.
+std::string shown_lines(std::string_view text);
+
+/// A JSON text whose strings hold hidden characters as \u009b.
+std::string shown_json(std::string_view json);
 
 /// The UTF-8 character that starts at byte `i`, and its length in bytes; a byte that starts none stands for itself.
 std::size_t decode_utf8(std::string_view text, std::size_t i, std::uint32_t* character);

@@ -36,7 +36,17 @@ TEST_CASE("numbers do not follow the locale, and every double survives") {
 }
 
 TEST_CASE("a user's text reaches gnuplot as it is, on one line") {
-  CHECK(gnuplot_text("it's a\n`name`_1") == "'it''s a `name`_1' noenhanced");
+  CHECK(gnuplot_text("it's a\n`name`_1") == "'it''s a\\x0a`name`_1' noenhanced");
+}
+
+TEST_CASE("what is hidden is shown in letters: controls, marks of direction, bytes that are not UTF-8") {
+  CHECK(shown("plain тёмный °é") == "plain тёмный °é");
+  CHECK(shown("a\x1b[31m\n\x7f") == "a\\x1b[31m\\x0a\\x7f");
+  CHECK(shown("\xc2\x9b\xe2\x80\xae\xef\xbb\xbf|") == "\\x9b\\u202e\\ufeff|");
+  CHECK(shown("\xff\xc3|\xe2\x80") == "\\xff\\xc3|\\xe2\\x80");
+  CHECK(shown(shown("a\x1b\\")) == shown("a\x1b\\"));
+  CHECK(shown_lines("a\tb\nc\r\x1b") == "a\tb\nc\\x0d\\x1b");
+  CHECK(shown_json("{\"a\": \"\xc2\x9b\x7f é\"}\n") == "{\"a\": \"\\u009b\\u007f é\"}\n");
 }
 
 TEST_CASE("a script that fails says so and leaves no picture; names no folder, too") {

@@ -9,6 +9,7 @@
 
 #include "clray/error.hpp"
 #include "shared/portable.h"
+#include "text/text.hpp"
 
 namespace clray {
 namespace {
@@ -20,8 +21,7 @@ void throw_fault(const std::string& where, const std::string& fault) {
 }  // namespace
 
 bool is_name(const std::string& text) {
-  const bool plain = std::all_of(text.begin(), text.end(),
-                                 [](unsigned char c) { return c >= 0x20 && c != 0x7f && c != '/' && c != '\\'; });
+  const bool plain = text.find_first_of("/\\") == text.npos && text::shown(text) == text;
   return plain && !text.empty() && text != "." && text != "..";
 }
 

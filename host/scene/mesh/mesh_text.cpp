@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 
 #include "scene/mesh/mesh_soup.hpp"
+#include "text/text.hpp"
 
 namespace clray {
 
@@ -47,18 +47,9 @@ bool underflows(std::string_view word) {
 }  // namespace
 
 std::string quote_word(std::string_view word) {
-  std::string text = "'";
-  for (char c : word.substr(0, 40)) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte < 0x20 || byte == 0x7f) {
-      char escaped[8];
-      std::snprintf(escaped, sizeof escaped, "\\x%02x", byte);
-      text += escaped;
-    } else {
-      text += c;
-    }
-  }
-  return text + (word.size() > 40 ? "…'" : "'");
+  std::size_t end = 0;
+  for (std::uint32_t c = 0; end < word.size() && end < 40;) end += text::decode_utf8(word, end, &c);
+  return "'" + text::shown(word.substr(0, end)) + (end < word.size() ? "…'" : "'");
 }
 
 std::string without_comment(std::string_view name, bool glued) {
