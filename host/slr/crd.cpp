@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // CRD v2 full-rate writer; see crd.hpp. A simulated station has no system delay and no atmosphere, and these are
-// written as zeros. What is not known is written as "na".
+// written as zeros. What is not known is written as "na" where readers take it.
 #include "slr/crd.hpp"
 
 #include <fmt/format.h>
@@ -29,15 +29,19 @@ CrdWriter::CrdWriter(const std::string& path, const CrdHeader& h, const CrdSuppl
   file_.text(fmt::format("H2 {} {} {} {} 7 {}\n", h.station, h.pad, h.system, h.occupancy, h.network));
   file_.text(
       fmt::format("H3 {} {} {} {} 0 {} {}\n", h.target, h.cospar, h.sic, h.norad, h.target_class, h.target_location));
-  // Full rate, first release. Not corrected for refraction, centre of mass and amplitude. The system delay, which is
-  // zero, is applied. Two-way ranges; data quality undefined.
-  file_.text(fmt::format("H4 0 {} {} 0 0 0 0 1 0 2 0\n", calendar(h.start), calendar(h.stop)));
+  // Full rate, first release. Corrected for refraction, since light was traced in a vacuum: who corrected the ranges
+  // again would shorten them. Not corrected for centre of mass and amplitude. The system delay, which is zero, is
+  // applied. Two-way ranges; data quality undefined.
+  file_.text(fmt::format("H4 0 {} {} 0 1 0 0 1 0 2 0\n", calendar(h.start), calendar(h.stop)));
   file_.text(fmt::format("H5 {} {} {} {} {}\n", h.prediction_type, h.prediction_year, h.prediction_date,
                          h.prediction_source, h.prediction_sequence));
   configuration(h);
   supplement(s);
-  file_.text("20 ").decimal(s.epoch_ps, 12).text(" na na na 0\n");
-  file_.text("40 ").decimal(s.epoch_ps, 12).text(" 0 sys na na na 0.0 0.0 na na na na 0 0 0 0 na\n");
+  file_.text("20 ").decimal(s.epoch_ps, 12);
+  file_.text(
+      fmt::format(" {} {} {} 0\n", value(h.pressure_hPa, 2), value(h.temperature_K, 2), value(h.humidity_percent, 0)));
+  // Numbers throughout: programs that read such files know no "na" here.
+  file_.text("40 ").decimal(s.epoch_ps, 12).text(" 0 sys 0 0 0.0 0.0 0.0 0.0 0.0 0.0 0.0 0 0 0 0 0.0\n");
 }
 
 void CrdWriter::configuration(const CrdHeader& h) {

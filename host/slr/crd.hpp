@@ -19,7 +19,7 @@ using namespace ephemeris;
 /// The records before the ranges. Texts hold no blanks; unknown numbers are NaN.
 struct CrdHeader {
   Epoch produced, start, stop;
-  std::string station = "clray", pad = "na", system = "na", occupancy = "na", network = "na";
+  std::string station = "clray", pad = "0", system = "0", occupancy = "0", network = "na";
   std::string target = "na", cospar = "na", sic = "na", norad = "na";
   int target_class = 0;     ///< 0: no retro-reflector
   int target_location = 1;  ///< Earth orbit
@@ -27,6 +27,7 @@ struct CrdHeader {
   std::string prediction_year = "na", prediction_date = "na", prediction_source = "na", prediction_sequence = "na";
   double wavelength_nm = 532.0, rate_Hz = 0.0, pulse_energy_mJ = 0.0, pulse_fwhm_ps = 0.0, divergence_arcsec = 0.0;
   double quantum_efficiency_percent = 0.0, dark_kHz = 0.0;
+  double pressure_hPa = 1013.25, temperature_K = 288.15, humidity_percent = 0.0;
 };
 
 /// Record 10: one range.

@@ -38,7 +38,20 @@ CrdHeader crd_header(const Session& session, const Scene& scene, std::uint64_t f
   h.start = epoch_of(session.ranges().zero(), session.time(first));
   h.stop = epoch_of(session.ranges().zero(), session.time(last));
   h.station = word(s.name);
+  h.pad = fmt::format("{}", s.pad);
+  h.system = fmt::format("{}", s.system);
+  h.occupancy = fmt::format("{}", s.occupancy);
+  h.network = word(s.network);
+  h.pressure_hPa = s.pressure_hPa;
+  h.temperature_K = s.temperature_K;
+  h.humidity_percent = s.humidity_percent;
   h.target = word(scene.name);
+  // Without a prediction the ranges are the scene's own, as of the session's start.
+  const Date begin = date_of(h.start);
+  h.prediction_year = fmt::format("{:02}", begin.year % 100);
+  h.prediction_date = fmt::format("{:02}{:02}{:02}", begin.month, begin.day, begin.hour);
+  h.prediction_source = "clray";
+  h.prediction_sequence = "0";
   if (const Prediction* p = session.ranges().prediction()) {
     h.target = word(p->target);
     h.cospar = p->cospar;

@@ -175,6 +175,10 @@ struct Station {
   double jitter_fwhm_s = 0.0;
   double dead_time_s = 0.0;
   bool flag_signal = false;  ///< CRD filter flag 1 noise, 2 signal; else 0
+  // What CRD files say of the station; it changes no range.
+  int pad = 0, system = 0, occupancy = 0;  ///< its numbers in the International Laser Ranging Service
+  std::string network = "na";
+  double pressure_hPa = 1013.25, temperature_K = 288.15, humidity_percent = 0.0;  ///< of the standard atmosphere
 };
 
 /// Replacements of materials under which the same hits are shaded again.

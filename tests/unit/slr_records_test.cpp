@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <map>
 
 #include "clray/error.hpp"
 #include "slr/crd.hpp"
@@ -73,6 +74,38 @@ TEST_CASE("CRD: what is written reads back to the last digit") {
   for (const char* type : {"C0", "C1", "C2", "C3", "20", "40"}) CHECK(file.records.at(type) == 1);
   CHECK(file.records.count("11") == 0);
   CHECK(file.records.count("50") == 0);
+}
+
+TEST_CASE("CRD: numbers stand where programs that read such files know nothing else") {
+  // Orekit 13.1 and orbitNP 1.2 refuse "na" in these fields: H2 pad, system, occupancy; H5 all; 20 and 40 all.
+  const Folder folder;
+  const std::string path = (folder.path / "a.crd").string();
+  CrdHeader h;
+  h.pad = "7840";
+  h.system = "35";
+  h.occupancy = "1";
+  h.network = "ILRS";
+  h.pressure_hPa = 963.456;
+  h.temperature_K = 281.5;
+  h.humidity_percent = 61.0;
+  h.prediction_year = "20";
+  h.prediction_date = "053123";
+  h.prediction_source = "clray";
+  h.prediction_sequence = "0";
+  CrdWriter writer(path, h, {0, 1.0});
+  writer.range({0, 1, 0});
+  writer.close();
+  std::ifstream in(path);
+  std::map<std::string, std::string> record;
+  for (std::string line; std::getline(in, line);) record[line.substr(0, line.find(' '))] = line;
+  CHECK(record["H2"] == "H2 clray 7840 35 1 7 ILRS");
+  CHECK(record["H5"] == "H5 0 20 053123 clray 0");
+  CHECK(record["20"] == "20 0.000000000000 963.46 281.50 61 0");
+  CHECK(record["40"].find("na") == std::string::npos);
+  // Refraction is corrected, for there is none in a vacuum; centre of mass and amplitude are not.
+  const std::string h4 = record["H4"];
+  CHECK(h4.substr(h4.size() - 16) == " 0 1 0 0 1 0 2 0");
+  CHECK(read_crd(path, {}).header.pad == "7840");
 }
 
 TEST_CASE("CRD: bad files are refused with their line, good ones of other stations are read") {
