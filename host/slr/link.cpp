@@ -27,12 +27,14 @@ LinkRow key_row(const Section& section, const std::string& name) {
   throw Error(ErrorCode::bug, "there is no such key", name);
 }
 
-/// Adds the station's other numbers to `rows`, except its epoch, on which no photon depends.
+/// Adds the station's other numbers to `rows`, except its epoch and what only CRD files say, on which no photon
+/// depends.
 void add_other_keys(const Station& station, std::vector<LinkRow>* rows) {
   for (const Key<Station>& k : keys<Station>()) {
     const bool there =
         std::any_of(rows->begin(), rows->end(), [&](const LinkRow& row) { return row.key == k.key.name; });
-    if (k.kind == KeyKind::number && !there && k.key.name != "start_mjd") rows->push_back(key_row(station, k.key.name));
+    const bool beside = k.key.name == "start_mjd" || k.key.meaning.rfind("CRD: ", 0) == 0;
+    if (k.kind == KeyKind::number && !there && !beside) rows->push_back(key_row(station, k.key.name));
   }
 }
 

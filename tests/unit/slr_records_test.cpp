@@ -81,6 +81,7 @@ TEST_CASE("CRD: numbers stand where programs that read such files know nothing e
   const Folder folder;
   const std::string path = (folder.path / "a.crd").string();
   CrdHeader h;
+  h.produced = h.start = h.stop = {59000, 0};
   h.pad = "7840";
   h.system = "35";
   h.occupancy = "1";
