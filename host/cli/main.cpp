@@ -171,11 +171,11 @@ int run(int argc, char** argv) {
   Scene scene = load_scene(arguments.scene, arguments.scene_options);
   cli::apply(arguments, scene);
   check_scene(scene);
-  warnings.show(scene.warnings);
   if (arguments.check) {
-    print(describe_scene(scene));
+    print(describe_scene(scene));  // the warnings, too
     return 0;
   }
+  warnings.show(scene.warnings);
   if (arguments.dump_kernel) {
     Device device(arguments.device);
     print(kernel_source(scene, device));

@@ -11,6 +11,7 @@
 #include "pipeline/detector/intensity.hpp"
 #include "pipeline/estimate.hpp"
 #include "scene/tables.hpp"
+#include "text/text.hpp"
 
 namespace clray {
 
@@ -144,6 +145,27 @@ void warn_unseen(Result* result) {
   }
 }
 
+/// Light outside the window of a delay record.
+void warn_outside_window(Result* result) {
+  const DelayResult* worst = nullptr;
+  double most = 0.01;
+  std::size_t count = 0;
+  for (const DelayResult& d : result->delay) {
+    const double share = (d.below_m2_per_sr + d.above_m2_per_sr) / d.intensity_m2_per_sr.value;
+    if (!(share > 0.01)) continue;
+    ++count;
+    if (!(share > most)) continue;
+    most = share;
+    worst = &d;
+  }
+  if (worst == nullptr) return;
+  std::string where = record_label(worst->key, "delay");
+  if (result->orientations.size() > 1) where += fmt::format(", orientation {}", worst->key.orientation);
+  if (count > 1) where += fmt::format("; {} in all", text::counted(count, "record"));
+  result->warnings.push_back(
+      fmt::format("{:.2g} of the light lies outside the delay window ({}): give start_ns and stop_ns", most, where));
+}
+
 }  // namespace
 
 void add_warnings(const Scene& scene, const Ending& ending, const LitRecords& lit, Result* result) {
@@ -159,8 +181,7 @@ void add_warnings(const Scene& scene, const Ending& ending, const LitRecords& li
                                              books.truncated_m2.value / books.incident_m2.value,
                                              scene.trace.max_bounces, record_label(books.key, "every detector")));
   }
-  if (result->diagnostics.above_window_fraction > 0.01 || result->diagnostics.below_window_fraction > 0.01)
-    result->warnings.push_back("more than 1 % of a pulse lies outside the delay window");
+  warn_outside_window(result);
   warn_unseen(result);
   if (result->target_asked && !result->target_reached) result->warnings.push_back(missed_target(scene, ending));
 }

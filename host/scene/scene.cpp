@@ -13,6 +13,7 @@
 #include "scene/file/material.hpp"
 #include "scene/mesh/foreign_format.hpp"
 #include "scene/scene_parts.hpp"
+#include "scene/spectrum.hpp"
 #include "scene/tables.hpp"
 #include "text/input_file.hpp"
 #include "text/text.hpp"
@@ -46,12 +47,18 @@ Vec3 option_direction(const Vec3& v, const std::string& option) {
 }
 
 /// Lights a bare mesh by the Sun from over the viewer's left shoulder if only pictures are asked for. Light from the
-/// viewer's own eye, such as a laser station's, shows no relief.
+/// viewer's own eye, such as a laser station's, shows no relief. A mesh with colours is seen in three bands.
 void light_for_pictures(const SceneOptions& options, Scene* scene) {
   const bool pictures = std::all_of(scene->detectors.begin(), scene->detectors.end(),
                                     [](const DetectorSpec& d) { return table_row("detector", d.kind).pixel; });
   if (!pictures || options.source || options.observer_at_source) return;
   scene->source.kind = Source::Kind::sun;
+  const bool coloured = std::any_of(scene->materials.begin(), scene->materials.end(),
+                                    [](const Material& m) { return !m.spectra.empty(); });
+  if (coloured) {
+    // The bands of the colours of an MTL.
+    for (const double low : {400.0, 500.0, 600.0}) scene->source.bands.push_back(make_band(low, low + 100.0));
+  }
   Observer& observer = scene->observers.front();
   observer.monostatic = false;
   const Vec3 o = observer.direction;
@@ -142,6 +149,19 @@ void apply_options(const SceneOptions& options, Scene* scene) {
   apply_detectors(options, scene);
 }
 
+/// A picture in one band has no colour, whatever its materials have.
+void warn_of_lost_colour(Scene* scene) {
+  const bool picture = std::any_of(scene->detectors.begin(), scene->detectors.end(),
+                                   [](const DetectorSpec& d) { return d.kind == "rgb"; });
+  if (!picture || bands_of(*scene).size() > 1) return;
+  for (const Material& m : scene->materials) {
+    if (m.spectra.empty()) continue;
+    scene->warnings.push_back("the picture has one band, so the colour of material '" + m.name +
+                              "' is lost: give a sun as [source] and bands = [[400, 500], [500, 600], [600, 700]]");
+    return;
+  }
+}
+
 }  // namespace
 
 Scene load_scene(const std::string& path, const SceneOptions& options) {
@@ -163,6 +183,7 @@ Scene load_scene(const std::string& path, const SceneOptions& options) {
   apply_options(options, &scene);
   if (mesh) light_for_pictures(options, &scene);
   check_scene(scene);
+  warn_of_lost_colour(&scene);
   const std::vector<std::string> more = ranging_warnings(scene);
   scene.warnings.insert(scene.warnings.end(), more.begin(), more.end());
   return scene;

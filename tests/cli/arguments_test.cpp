@@ -126,6 +126,12 @@ TEST_CASE("check: says what was understood, traces nothing, needs no device") {
   CHECK(outcome.status == 0);
   CHECK(contains(outcome.out, "square"));
   CHECK_FALSE(scratch.has("clray-out"));
+  spit(scratch / "odd.obj", square() + "curv 1\n");
+  const auto warned = clray(scratch, {"--check", "odd.obj"});
+  CHECK(warned.err.empty());
+  const std::string words = "warning: odd.obj:6: statement 'curv' is left out";
+  CHECK(contains(warned.out, words));
+  CHECK(warned.out.find(words) == warned.out.rfind(words));
 }
 
 TEST_CASE("unusable input: status 3, file and line, no output folder") {

@@ -35,7 +35,7 @@ const clray::Material& only(const clray::Mesh& mesh) {
 }  // namespace
 
 TEST_CASE("Kd and Ks with illum 2 become Ashikhmin-Shirley with the sum as rho and F0") {
-  const auto mesh = with_mtl("newmtl m\nKa 1 1 1\nKd 0.1 0.1 0.1\nKs 0.4 0.4 0.4\nNs 50\nd 1\nillum 2\nmap_Kd x.png\n");
+  const auto mesh = with_mtl("newmtl m\nKa 1 1 1\nKd 0.1 0.1 0.1\nKs 0.4 0.4 0.4\nNs 50\nd 1\nillum 2\nmap_Ks x.png\n");
   const clray::Material& m = only(*mesh);
   CHECK(m.name == "m");
   CHECK(m.model == "ashikhmin-shirley");
@@ -48,23 +48,35 @@ TEST_CASE("Kd and Ks with illum 2 become Ashikhmin-Shirley with the sum as rho a
   CHECK(mesh->warnings.empty());
 }
 
-TEST_CASE("rho is a mean over the colours and at most 1") {
-  const auto clamped = with_mtl("newmtl m\nKd 1 0.5 0.75\nKs 0.5\nillum 3\n");
-  CHECK(only(*clamped).parameters.at("rho") == 1.0);
-  CHECK(only(*clamped).parameters.at("d") == doctest::Approx(0.6).epsilon(1e-15));
+TEST_CASE("a colour is a spectrum of three bands, each at most 1") {
+  const auto clamped = with_mtl("newmtl m\nKd 1 0.25 0.625\nKs 0.5\nillum 3\n");
+  for (const char* key : {"rho", "f0"}) {
+    const clray::Spectrum& s = only(*clamped).spectra.at(key);
+    CHECK(s.value == std::vector<double>{1.0, 0.75, 0.75, 1.0});  // blue, green, green, red
+    CHECK(s.wavelength_nm.front() == 500.0);
+    CHECK(s.wavelength_nm[2] == 600.0);
+    CHECK(only(*clamped).parameters.count(key) == 0);
+  }
+  CHECK(only(*clamped).parameters.at("d") == doctest::Approx(1.875 / 3.375).epsilon(1e-15));  // of the means
   CHECK(only(*clamped).parameters.at("n") == 0.0);
   const auto mirror = with_mtl("newmtl m\nKd 0 0 0\nKs 0.25 0.25 0.25\nNs 1e6\nillum 2\n");
   CHECK(only(*mirror).parameters.at("d") == 0.0);
   CHECK(only(*mirror).parameters.at("n") == 1e6);
 }
 
-TEST_CASE("no Ks, or illum below 2 or absent, is Lambert with the mean Kd") {
+TEST_CASE("no Ks, or illum below 2 or absent, is Lambert with Kd") {
   for (const char* rest : {"", "Ks 0 0 0\nillum 2\n", "Ks 0.5 0.5 0.5\nillum 1\n", "illum 2\n"}) {
     const auto mesh = with_mtl(std::string("newmtl m\nKd 0.25 0.5 0.75\n") + rest);
     CHECK(only(*mesh).model == "lambert");
-    CHECK(only(*mesh).parameters == std::map<std::string, double>{{"rho", 0.5}});
+    CHECK(only(*mesh).parameters.empty());
+    CHECK(only(*mesh).spectra.at("rho").value == std::vector<double>{0.75, 0.5, 0.5, 0.25});
     CHECK(mesh->warnings.empty());
   }
+  const auto textured = with_mtl("newmtl m\nKd 0.5\nmap_Kd a.png\n");
+  CHECK(only(*textured).parameters == std::map<std::string, double>{{"rho", 0.5}});
+  REQUIRE(textured->warnings.size() == 1);
+  CHECK(textured->warnings[0].find("a.mtl:1: material 'm' has a texture (map_Kd), which is left out") !=
+        std::string::npos);
   const auto absent = with_mtl("newmtl m\nKd 0.5\nKs 0.5\n");
   CHECK(only(*absent).model == "lambert");
   REQUIRE(absent->warnings.size() == 1);

@@ -4,6 +4,7 @@
 #include "scene/mesh/mtl_reader.hpp"
 
 #include <algorithm>
+#include <array>
 #include <optional>
 
 #include "scene/file/material.hpp"
@@ -17,14 +18,18 @@ namespace clray {
 namespace {
 
 constexpr double kMostNs = 1.0e6;
+constexpr double kBlueEnd_nm = 500.0, kRedStart_nm = 600.0;
+
+using Colour = std::array<double, 3>;  // red, green, blue
 
 struct MtlEntry {
   std::string_view name;  // of the file
   std::uint64_t line = 0;
-  std::optional<double> kd, ks;  // means over the colours
+  std::optional<Colour> kd, ks;
   double ns = 0.0;
   std::optional<std::int64_t> illum;
   std::optional<double> d, tr;  // opacity, transparency
+  bool textured = false;
 };
 
 class MtlReader {
@@ -92,6 +97,8 @@ class MtlReader {
       if (*entry.illum >= 0 && *entry.illum <= 10) return;
       strange_illum_.add(line, entry.name);
       entry.illum.reset();
+    } else if (key == "map_Kd") {
+      entry.textured = true;
     } else if (key == "d" || key == "Tr") {
       std::string_view last;
       while (text_.more_on_line()) last = text_.word();  // d may begin with -halo
@@ -100,8 +107,8 @@ class MtlReader {
     }
   }
 
-  // The mean of a colour. Spectral files and CIE values are refused, since they give no share of light per colour.
-  void colour(std::string_view key, const MtlEntry& entry, std::optional<double>& mean) {
+  // A colour. Spectral files and CIE values are refused, since they give no share of light per colour.
+  void colour(std::string_view key, const MtlEntry& entry, std::optional<Colour>& value) {
     const std::string what(key);
     const std::uint64_t line = text_.line();
     TextCursor ahead = text_;
@@ -110,33 +117,53 @@ class MtlReader {
       spectral_.add(line, what);
       return;
     }
-    double sum = 0.0;
-    int count = 0;
+    Colour rgb{};
+    std::size_t count = 0;
     bool outside = false;
     for (; text_.more_on_line() && count < 3; ++count) {
-      const double value = text_.number(what.c_str());
-      const double share = std::min(std::max(value, 0.0), 1.0);
-      outside = outside || share != value;
-      sum += share;
+      const double given = text_.number(what.c_str());
+      rgb[count] = std::min(std::max(given, 0.0), 1.0);
+      outside = outside || rgb[count] != given;
     }
     // MTL: green and blue default to red where only red is given.
     if (count != 1 && count != 3) text_.fail(what + " with one or three values was expected");
     if (outside) outside_.add(line, what + " of " + quote_word(entry.name) + " is outside [0,1]");
-    mean = sum / count;
+    if (count == 1) rgb[1] = rgb[2] = rgb[0];
+    value = rgb;
+  }
+
+  static double mean(const Colour& c) { return (c[0] + c[1] + c[2]) / 3.0; }
+
+  // A grey colour is a number. Another one is a spectrum of three bands: blue below 500 nm, red from 600 nm on.
+  static void set_colour(const char* key, const Colour& c, Material* material) {
+    if (c[0] == c[1] && c[1] == c[2]) {
+      material->parameters[key] = c[0];
+      return;
+    }
+    constexpr double kStep_nm = 1e-6;  // a spectrum is linear between its points
+    material->spectra[key] = {{kBlueEnd_nm, kBlueEnd_nm + kStep_nm, kRedStart_nm, kRedStart_nm + kStep_nm},
+                              {c[2], c[1], c[1], c[0]}};
   }
 
   Material to_material(const MtlEntry& entry) {
     if (entry.d ? *entry.d < 1.0 : entry.tr && *entry.tr > 0.0) transparent_.add(entry.line, entry.name);
     Material material;
     material.name = entry.name;
-    const double kd = entry.kd.value_or(0.0), ks = entry.ks.value_or(0.0);
-    if (ks > 0.0 && entry.illum.value_or(0) >= 2) {
+    const Colour kd = entry.kd.value_or(Colour{}), ks = entry.ks.value_or(Colour{});
+    if (mean(ks) > 0.0 && entry.illum.value_or(0) >= 2) {
       material.model = "ashikhmin-shirley";
-      material.parameters["rho"] = std::min(kd + ks, 1.0);
-      material.parameters["f0"] = material.parameters["rho"];
-      material.parameters["d"] = kd / (kd + ks);
+      Colour both{};
+      bool bright = false;
+      for (std::size_t i = 0; i < 3; ++i) {
+        both[i] = std::min(kd[i] + ks[i], 1.0);
+        bright = bright || kd[i] + ks[i] > 1.0;
+      }
+      set_colour("rho", both, &material);
+      set_colour("f0", both, &material);
+      material.parameters["d"] = mean(kd) / (mean(kd) + mean(ks));
       material.parameters["n"] = entry.ns;
-      if (kd + ks > 1.0) bright_.add(entry.line, entry.name);
+      if (bright) bright_.add(entry.line, entry.name);
+      if (entry.textured) textured_.add(entry.line, entry.name);
       return material;
     }
     if (!entry.kd) {
@@ -145,9 +172,10 @@ class MtlReader {
       material.name = entry.name;
       return material;
     }
-    if (ks > 0.0 && !entry.illum) no_illum_.add(entry.line, entry.name);
+    if (mean(ks) > 0.0 && !entry.illum) no_illum_.add(entry.line, entry.name);
     material.model = "lambert";
-    material.parameters["rho"] = kd;
+    set_colour("rho", kd, &material);
+    if (entry.textured) textured_.add(entry.line, entry.name);
     return material;
   }
 
@@ -162,6 +190,8 @@ class MtlReader {
     no_illum_.warn(path_, material(no_illum_) + " has Ks but no illum >= 2: taken as Lambert with Kd", warnings);
     no_kd_.warn(path_, material(no_kd_) + " has no Kd: taken as Lambert with rho 0.5", warnings);
     bright_.warn(path_, "Kd + Ks of " + material(bright_) + " are above 1 and taken as 1", warnings);
+    textured_.warn(path_, material(textured_) + " has a texture (map_Kd), which is left out: Kd alone is its colour",
+                   warnings);
     transparent_.warn(path_, material(transparent_) + " is transparent (d or Tr): taken as opaque", warnings);
     if (entries_.empty()) warnings.push_back(path_ + ": the material library defines no material");
   }
@@ -171,7 +201,8 @@ class MtlReader {
   std::optional<MtlEntry> current_;
   std::vector<MtlEntry> entries_;
   text::NameIndex place_of_;
-  Tally early_, unnamed_, twice_, outside_, strange_illum_, spectral_, no_illum_, no_kd_, bright_, transparent_;
+  Tally early_, unnamed_, twice_, outside_, strange_illum_, spectral_, no_illum_, no_kd_, bright_, textured_,
+      transparent_;
 };
 
 }  // namespace

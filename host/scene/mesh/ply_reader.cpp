@@ -45,6 +45,8 @@ struct PlyElement {
   std::vector<PlyProperty> properties;
 };
 
+constexpr const char* kStrips = "tristrips";
+
 enum class Encoding { text, little, big };
 
 const ScalarType& scalar_type(TextCursor& text) {
@@ -125,7 +127,7 @@ class PlyHeader {
     if (element.name == "vertex" && !property.count_type && property.name.size() == 1 && property.name[0] >= 'x' &&
         property.name[0] <= 'z')
       property.axis = property.name[0] - 'x';
-    property.corners = element.name == "face" && property.count_type &&
+    property.corners = (element.name == "face" || element.name == kStrips) && property.count_type &&
                        (property.name == "vertex_indices" || property.name == "vertex_index");
     if (property.corners && property.type->kind == 'f')
       text_.fail(property.name + " in a floating type; an integer type was expected");
@@ -243,18 +245,22 @@ class PlyBody {
   std::uint64_t number_ = 0;
 };
 
-// One element vertex and one element face with what is read of them.
+// One element vertex and one element face (or tristrips) with what is read of them.
 void check_layout(const PlyHeader& header, const std::string& path) {
-  int axes[3] = {0, 0, 0}, corner_lists = 0, vertices = 0, faces = 0;
+  int axes[3] = {0, 0, 0}, corner_lists = 0, vertices = 0, faces = 0, strips = 0;
   for (const PlyElement& element : header.elements) {
     vertices += element.name == "vertex";
     faces += element.name == "face";
+    strips += element.name == kStrips;
     for (const PlyProperty& p : element.properties) {
       if (p.axis >= 0) ++axes[p.axis];
       corner_lists += p.corners;
     }
   }
-  if (vertices != 1 || faces != 1 || axes[0] != 1 || axes[1] != 1 || axes[2] != 1 || corner_lists != 1) {
+  if (faces == 0 && strips == 0 && vertices == 1)
+    fail_input(path, 0, "points without faces; an element face with a list vertex_indices was expected");
+  const bool one = faces <= 1 && strips <= 1 && faces + strips > 0 && corner_lists == faces + strips;
+  if (vertices != 1 || !one || axes[0] != 1 || axes[1] != 1 || axes[2] != 1) {
     fail_input(path, 0,
                "one element vertex with x, y, z and one element face with a list vertex_indices were expected");
   }
@@ -278,7 +284,35 @@ void check_size(const PlyHeader& header, std::uint64_t body, const std::string& 
   }
 }
 
-void read_item(PlyBody& body, const PlyElement& element, std::uint64_t vertices, PolygonSoup& soup) {
+// Strips of triangles, each strip ended by -1: every corner makes a triangle with the two before it, turned over at
+// every second one. Triangles with a corner twice only lead from one strip to the next.
+void read_strips(PlyBody& body, const ScalarType& type, std::int64_t count, std::uint64_t vertices,
+                 const std::string& path, PolygonSoup& soup) {
+  std::int64_t a = -1, b = -1;
+  bool turned = false;
+  for (std::int64_t i = 0; i < count; ++i) {
+    const std::int64_t c = body.integer(type, -1, static_cast<std::int64_t>(vertices) - 1, "a vertex index");
+    if (c < 0) {
+      a = b = -1;
+      turned = false;
+      continue;
+    }
+    if (a >= 0) {
+      if (a != b && b != c && a != c) {
+        const std::size_t start = soup.corners.size();
+        for (const std::int64_t corner : {turned ? b : a, turned ? a : b, c})
+          soup.corners.push_back(static_cast<std::uint32_t>(corner));
+        soup.end_face(start, path, body.line());
+      }
+      turned = !turned;
+    }
+    a = b;
+    b = c;
+  }
+}
+
+void read_item(PlyBody& body, const PlyElement& element, std::uint64_t vertices, const std::string& path,
+               PolygonSoup& soup) {
   Vec3 point(0.0);
   for (const PlyProperty& p : element.properties) {
     if (p.axis >= 0) {
@@ -291,6 +325,10 @@ void read_item(PlyBody& body, const PlyElement& element, std::uint64_t vertices,
     }
     const std::int64_t count =
         body.integer(*p.count_type, 0, static_cast<std::int64_t>(kMaxCorners), "a list's length");
+    if (p.corners && element.name == kStrips) {
+      read_strips(body, *p.type, count, vertices, path, soup);
+      continue;
+    }
     for (std::int64_t i = 0; i < count; ++i) {
       if (!p.corners) {
         body.skip(*p.type);
@@ -322,7 +360,7 @@ PolygonSoup read_ply(const std::string& path, const std::string& content) {
     for (std::uint64_t i = 0; i < element.count; ++i) {
       const std::size_t start = soup.corners.size();
       body.begin_item(element.name, i + 1);
-      read_item(body, element, vertices, soup);
+      read_item(body, element, vertices, path, soup);
       if (element.name == "face") soup.end_face(start, path, body.line());
       body.end_item();
     }
