@@ -17,11 +17,11 @@ const KernelFiles kFiles = {
     {"brdf/brdf.def",
      "// BRDF(no, \"a comment\", \"\", \"\")\nBRDF(red, \"red\", \"\", \"x\")\nBRDF(green, \"g\", \"\", \"x\")\n"
      "BRDF(blue, \"b\", \"\", \"x\")\n"},
-    {"shape/shape.def", "SHAPE(triangle, \"mesh\", \"\", \"x\")\nSHAPE(sphere, \"sphere\", \"\", \"x\")\n"},
+    {"shape/shape.def", "SHAPE(grid, \"mesh\", \"flat faces\", \"\", \"x\")\nSHAPE(sphere, \"sphere\", \"flat\", \"\", \"x\")\n"},
     {"detector/detector.def", "DETECTOR(delay, \"delay\", beam, \"\", \"x\")\n"},
     {"brdf/red.cl", "int red;\n"},
     {"brdf/blue.cl", "#include \"a.h\"\nint blue;\n"},
-    {"shape/triangle.cl", "int triangle;\n"},
+    {"shape/grid.cl", "int grid;\n"},
     {"shape/sphere.cl", "int sphere;\n"},
     {"a.h", "#ifndef A_H\n#define A_H\n#include \"b.h\"\nint a;\n#endif\n"},
     {"b.h", "// says nothing\n#ifndef B_H\n#define B_H\nint b;\n#endif\n"},
@@ -108,8 +108,8 @@ TEST_CASE("only the used rows of a table are compiled, all rows have their numbe
         std::string::npos);
   CHECK(source.find("#define CLRAY_BRDFS(X) X(red) X(blue)\n") != std::string::npos);
   CHECK(source.find("CLRAY_BRDF_ONLY") == std::string::npos);
-  CHECK(count(source, "int triangle;") == 1);
-  CHECK(source.find("#define CLRAY_SHAPE_triangle 0\n") != std::string::npos);
+  CHECK(count(source, "int grid;") == 1);
+  CHECK(source.find("#define CLRAY_SHAPE_grid 0\n") != std::string::npos);
   CHECK(source.find("#define CLRAY_SHAPES(X) X(sphere)\n") != std::string::npos);
   CHECK(source.find("#define CLRAY_SHAPE_ONLY sphere\n") != std::string::npos);
   CHECK(source.find("#define CLRAY_DETECTORS(X)\n") != std::string::npos);
