@@ -24,14 +24,14 @@
 #include "stage/path.cl"
 
 /// Runs the work-items first_item … first_item + items - 1 of a block of points, first_point … first_point + points - 1
-/// of every replicate. The number of an item stands for its view, pixel, replicate and part; the part runs fastest.
-/// With n parts, part k is every n-th point of the block from the k-th on, at most `chunk` points.
+/// of every replicate. The number of an item stands for its view (a place in `asked`), pixel, replicate and part; the
+/// part runs fastest. With n parts, part k is every n-th point of the block from the k-th on, at most `chunk` points.
 #define CLRAY_ARGUMENT(type, name) type *name,
 #define CLRAY_VALUE(type, name) name,
 __kernel void clray_trace(CLRAY_BUFFERS(CLRAY_ARGUMENT) u64 first_item, u32 items, u32 first_point, u32 points,
                           u32 chunk) {
   if (get_global_id(0) >= items) return;
-  const Buffers g = {CLRAY_BUFFERS(CLRAY_VALUE)};
+  Buffers g = {CLRAY_BUFFERS(CLRAY_VALUE)};
   const u32 chunks = (points + chunk - 1u) / max(chunk, 1u);
   u64 item = first_item + get_global_id(0);
   u32 part = (u32)(item % max(chunks, 1u));
@@ -49,9 +49,11 @@ __kernel void clray_trace(CLRAY_BUFFERS(CLRAY_ARGUMENT) u64 first_item, u32 item
     tally.stream = 1u + (u32)(item % max(pixels, (u64)1));
     item /= max(pixels, (u64)1);
   }
-  tally.view = (u32)item;
+  tally.view = asked[item];
+  g.counters += CLRAY_COUNTERS * tally.view;
   tally_clear(&tally);
-  Sampler sampler = {pass->key0, pass->key1, pass->epoch, tally.replicate, tally.stream, 0u};
+  const __global ClrayView* view = views + tally.view;
+  Sampler sampler = {pass->key0 ^ view->key0, pass->key1 ^ view->key1, pass->epoch, tally.replicate, tally.stream, 0u};
   sampler_begin(&sampler, directions, first_point + part);
   for (u32 k = part; k < points; k += chunks) {
     sampler.index = first_point + k;

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "shared/elementary.h"
+#include "text/hash.hpp"
 
 namespace clray {
 namespace {
@@ -89,6 +90,20 @@ ClrayConnection connection_to(const Vec3& direction, double acceptance_rad, bool
   }
   row.shadow = shadow ? 1u : 0u;
   return row;
+}
+
+/// The key of a view's scrambles: a hash of the directions that decide what is traced. So a view has the same points
+/// alone and among others, and two views have independent ones.
+void set_key(const Orientation& orientation, ClrayView* view) {
+  std::uint64_t key = kFnvStart;
+  const auto add = [&](const Vec3& direction) {
+    const double numbers[3] = {direction.x + 0.0, direction.y + 0.0, direction.z + 0.0};  // no negative zeros
+    key = fnv1a(key, numbers, sizeof numbers);
+  };
+  add(orientation.source);
+  for (const Vec3& observer : orientation.observers) add(observer);
+  view->key0 = static_cast<std::uint32_t>(key);
+  view->key1 = static_cast<std::uint32_t>(key >> 32);
 }
 
 /// Sets where the beam's rays start; returns the area of its rectangle.
@@ -191,6 +206,7 @@ Beams build_beams(const Scene& scene, const Geometry& geometry, const BeamReques
     const Vec3& toward = request.pixels ? orientation.observers[observer] : orientation.source;
     ClrayView view{};
     store(view.toward, v3_of(toward));
+    set_key(orientation, &view);
     view.root = geometry.parts[0].root;
     set_frame(geometry.parts[0].frame, &view);
     if (instanced) place_parts(geometry, motions, &out, &view);
@@ -218,30 +234,39 @@ Beams build_beams(const Scene& scene, const Geometry& geometry, const BeamReques
   return out;
 }
 
-double PathRange::low() const {
-  return *std::min_element(low_m.begin(), low_m.end());
-}
-double PathRange::high() const {
-  return *std::max_element(high_m.begin(), high_m.end());
+void PathRange::add(const PathRange& other) {
+  low_m = std::min(low_m, other.low_m);
+  high_m = std::max(high_m, other.high_m);
 }
 
-PathRange path_range(const Scene& scene, const Geometry& geometry, const BeamRequest& request, const Beams& beams) {
-  const std::size_t connections = beams.connections.size() / beams.views.size();
-  PathRange range{std::vector<double>(connections, 1e300), std::vector<double>(connections, -1e300)};
+PathRange PathRanges::view(std::size_t view) const {
+  PathRange all;
+  for (std::size_t c = 0; c < connections; ++c) all.add(of[view * connections + c]);
+  return all;
+}
+
+PathRange PathRanges::connection(std::size_t connection) const {
+  PathRange all;
+  for (std::size_t k = connection; k < of.size(); k += connections) all.add(of[k]);
+  return all;
+}
+
+PathRanges path_ranges(const Scene& scene, const Geometry& geometry, const BeamRequest& request, const Beams& beams) {
+  PathRanges ranges;
+  ranges.connections = beams.connections.size() / beams.views.size();
   const Vec3& r = scene.reference_point;
   for (std::size_t v = 0; v < beams.views.size(); ++v) {
     const std::vector<RigidMotion> motions = motions_of(scene, geometry, request.orientations[v]);
-    for (std::size_t c = 0; c < connections; ++c) {
-      const double *s = beams.views[v].toward, *o = beams.connections[v * connections + c].direction;
+    for (std::size_t c = 0; c < ranges.connections; ++c) {
+      const double *s = beams.views[v].toward, *o = beams.connections[v * ranges.connections + c].direction;
       const Point sum{{s[0] + o[0], s[1] + o[1], s[2] + o[2]}};
       double a, b;
       body_extent(geometry, motions, sum, &a, &b);
       const double reference = std::fma(sum[0], r.x, std::fma(sum[1], r.y, sum[2] * r.z));
-      range.low_m[c] = std::min(range.low_m[c], reference - b);
-      range.high_m[c] = std::max(range.high_m[c], reference - a);
+      ranges.of.push_back({reference - b, reference - a});
     }
   }
-  return range;
+  return ranges;
 }
 
 }  // namespace clray

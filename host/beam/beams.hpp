@@ -51,12 +51,20 @@ struct Beams {
   PictureFrame frame;
 };
 
-/// Path lengths (m, relative to the reference point) that one bounce can have, per connection over all views.
+/// A range of path lengths, m, relative to the reference point.
 struct PathRange {
-  std::vector<double> low_m, high_m;
+  double low_m = 1e300, high_m = -1e300;
 
-  double low() const;
-  double high() const;
+  void add(const PathRange& other);
+};
+
+/// The path lengths that one bounce can have.
+struct PathRanges {
+  std::size_t connections = 1;
+  std::vector<PathRange> of;  ///< [view][connection]
+
+  PathRange view(std::size_t view) const;
+  PathRange connection(std::size_t connection) const;
 };
 
 /// Where rays start, what hits are connected to, and where hinged parts stand. Strata come later (strata.hpp).
@@ -65,7 +73,7 @@ Beams build_beams(const Scene& scene, const Geometry& geometry, const BeamReques
 /// Where the parts of the body stand in an orientation.
 std::vector<RigidMotion> motions_of(const Scene& scene, const Geometry& geometry, const Orientation& orientation);
 
-/// Path lengths of one bounce over all views.
-PathRange path_range(const Scene& scene, const Geometry& geometry, const BeamRequest& request, const Beams& beams);
+/// Path lengths of one bounce.
+PathRanges path_ranges(const Scene& scene, const Geometry& geometry, const BeamRequest& request, const Beams& beams);
 
 }  // namespace clray

@@ -204,8 +204,8 @@ class Rasteriser {
 }  // namespace
 
 std::uint32_t grid_cells(std::size_t views) {
-  std::uint32_t cells = 256;
-  while (cells > 8 && static_cast<std::uint64_t>(views) * cells * cells > 1u << 17) cells /= 2;
+  std::uint32_t cells = 64;
+  while (cells > 8 && static_cast<std::uint64_t>(views) * cells * cells > 1u << 24) cells /= 2;
   return cells;
 }
 

@@ -30,7 +30,8 @@ struct BeamCell {
   vec3 normal{};                ///< of any length, beam's axes, on the source's side; zero where not known
 };
 
-/// Cells along an edge for a pass of `views` views: 8 … 256 along an edge, at most 2^17 cells in all.
+/// Cells along an edge: 64, for finer ones gain nothing (docs/sampling.md), or fewer where there are more than 4096
+/// `views`: at most 2^24 cells in all, at least 8 along an edge.
 std::uint32_t grid_cells(std::size_t views);
 
 /// The grid's cells by rows, or none where drawing them would take more than about a second.

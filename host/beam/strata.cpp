@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kMostStrips = 1024.0;   // over the body, of path length
 constexpr int kMostCuts = 32;            // parts of a cell
-constexpr double kMostPieces = 1 << 20;  // about, over all views
+constexpr double kMostPieces = 1 << 27;  // over all views; cells are rarely cut into so many
 constexpr std::size_t kMostLooks = 16;   // weights of a cell: observers times lanes
 constexpr std::size_t kStretch = 4;      // intervals of path on either side that share one probability
 // These shares of the probability follow area and path length; the rest follows what the surface sends.
@@ -129,13 +129,14 @@ class Stratifier {
     way_.z += 1.0;
     first_ = steering_.bins->first_m - v3_dot(way_, to_beam(&reference[0]));
     width_ = steering_.bins->bin_m;
-    const double extent = steering_.paths.high() - steering_.paths.low();
+    const PathRange paths = steering_.paths.view(v_);
+    const double extent = paths.high_m - paths.low_m;
     while (extent > kMostStrips * width_) width_ *= 2.0;
     while (extent < 0.25 * kMostStrips * width_) width_ *= 0.5;
     const double cells = static_cast<double>(beams_.views.size() * cells_->size());
-    lowest_ = static_cast<std::int64_t>(std::floor((steering_.paths.low() - steering_.bins->first_m) / width_));
-    highest_ = static_cast<std::int64_t>(std::floor((steering_.paths.high() - steering_.bins->first_m) / width_));
-    cuts_ = std::clamp(static_cast<int>(8.0 * kMostPieces / cells), 1, kMostCuts);  // few cells need as many
+    lowest_ = static_cast<std::int64_t>(std::floor((paths.low_m - steering_.bins->first_m) / width_));
+    highest_ = static_cast<std::int64_t>(std::floor((paths.high_m - steering_.bins->first_m) / width_));
+    cuts_ = std::clamp(static_cast<int>(kMostPieces / cells), 1, kMostCuts);  // few cells need as many
   }
 
   /// Cuts a cell where its surface crosses from one strip to the next.

@@ -30,7 +30,7 @@ struct Steering {
   const MaterialTable& materials;
   std::size_t lanes;
   bool connect;  ///< what surfaces send to observers counts
-  const PathRange& paths;
+  const PathRanges& paths;
   std::optional<PathBins> bins;  ///< strips of path length end at these edges
 };
 

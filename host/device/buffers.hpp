@@ -44,12 +44,13 @@ cl::Buffer make_buffer(OpenedDevice& opened, const std::vector<T>& values, cl_me
   return make_buffer(opened, values.data(), values.size(), flags);
 }
 
-/// Sets `count` elements from the start to zero bytes (in queue order; does not wait).
+/// Sets `count` elements from element `first` on to zero bytes (in queue order; does not wait).
 template <class T>
-void zero_buffer(OpenedDevice& opened, const cl::Buffer& buffer, std::size_t count) {
+void zero_buffer(OpenedDevice& opened, const cl::Buffer& buffer, std::size_t count, std::size_t first = 0) {
   static_assert(sizeof(T) % 4 == 0, "filled by 32-bit words");
   if (count == 0) return;
-  with_cl_errors(opened.info.name, [&] { opened.queue.enqueueFillBuffer(buffer, cl_uint{0}, 0, count * sizeof(T)); });
+  with_cl_errors(opened.info.name,
+                 [&] { opened.queue.enqueueFillBuffer(buffer, cl_uint{0}, first * sizeof(T), count * sizeof(T)); });
 }
 
 /// A buffer of `count` zeros.

@@ -18,19 +18,19 @@ cl::Buffer filled(OpenedDevice& opened, const Numbers<T>& numbers) {
                                                        : make_zero_buffer<T>(opened, numbers.count);
 }
 
-/// Adds a buffer of the device, times `unit`. It goes in blocks, so that memory is reused and not mapped anew.
-void add_to(std::vector<Sum>* values, OpenedDevice& opened, const cl::Buffer& buffer, std::int64_t unit) {
-  constexpr std::size_t kBlock = 1u << 18;
-  for (std::size_t first = 0; first < values->size(); first += kBlock) {
-    const auto block = read_buffer<std::int64_t>(opened, buffer, std::min(kBlock, values->size() - first), first);
-    for (std::size_t k = 0; k < block.size(); ++k) (*values)[first + k] += static_cast<Sum>(block[k]) * unit;
-  }
+/// Calls `function` with pieces of a buffer's numbers begin … end - 1 and where each starts, so that memory is reused
+/// and not mapped anew.
+template <class T, class Function>
+void each_piece(OpenedDevice& opened, const cl::Buffer& buffer, const SumRange& range, Function&& function) {
+  constexpr std::size_t kPiece = 1u << 18;
+  for (std::uint64_t first = range.begin; first < range.end; first += kPiece)
+    function(first, read_buffer<T>(opened, buffer, std::min<std::uint64_t>(kPiece, range.end - first), first));
 }
 
 }  // namespace
 
 DevicePass::DevicePass(OpenedDevice& device, const PassPlan& plan, const Geometry& geometry, const KernelFiles& files)
-    : opened_(device), constants_(plan.constants) {
+    : opened_(device), constants_(plan.constants), asked_(all_views(plan)) {
   const ProgramOptions& options = plan.program.options;
   const std::string source = program_source(opened_, "trace.cl", options, files);
   kernel_ = make_kernel(opened_, build_source(opened_, "trace.cl", source, options.warnings_are_errors), "clray_trace");
@@ -59,16 +59,26 @@ void DevicePass::check_size(const PassPlan& plan) const {
 }
 
 void DevicePass::clear(const PassPlan& plan) {
-  zero_buffer<std::int64_t>(opened_, buffers_.at("sums"), plan.layout.values);
-  if (has_wide_) zero_buffer<std::int64_t>(opened_, buffers_.at("wide"), plan.layout.values);
-  zero_buffer<std::uint32_t>(opened_, buffers_.at("counts"), plan.layout.counts);
-  zero_buffer<std::int64_t>(opened_, buffers_.at("counters"), CLRAY_COUNTERS);
+  for (const SumBlock& block : plan.layout.blocks) {
+    const SumRange range = range_of(plan.layout, block, asked_.front(), asked_.back() + 1);
+    if (block.counts()) {
+      zero_buffer<std::uint32_t>(opened_, buffers_.at("counts"), range.end - range.begin, range.begin);
+    } else {
+      zero_buffer<std::int64_t>(opened_, buffers_.at("sums"), range.end - range.begin, range.begin);
+      if (has_wide_) zero_buffer<std::int64_t>(opened_, buffers_.at("wide"), range.end - range.begin, range.begin);
+    }
+  }
+  zero_buffer<std::int64_t>(opened_, buffers_.at("counters"), CLRAY_COUNTERS * plan.layout.shape.views);
 }
 
-void DevicePass::set_epoch(std::uint32_t epoch) {
-  if (constants_.epoch == epoch) return;
-  constants_.epoch = epoch;
-  write_buffer(opened_, buffers_.at("pass"), std::vector<ClrayPass>{constants_});
+void DevicePass::set_work(std::uint32_t epoch, const std::vector<std::uint32_t>& views) {
+  if (constants_.epoch != epoch) {
+    constants_.epoch = epoch;
+    write_buffer(opened_, buffers_.at("pass"), std::vector<ClrayPass>{constants_});
+  }
+  if (asked_ == views) return;
+  asked_ = views;
+  write_buffer(opened_, buffers_.at("asked"), asked_);
 }
 
 void DevicePass::launch_items(std::uint64_t first, std::uint32_t items, const PointBlock& block, std::uint32_t group) {
@@ -84,14 +94,30 @@ void DevicePass::launch_items(std::uint64_t first, std::uint32_t items, const Po
 }
 
 void DevicePass::drain(const PassPlan& plan, Sums* sums) {
-  sums->values.resize(plan.layout.values, 0);
-  sums->counts.resize(plan.layout.counts, 0);
-  add_to(&sums->values, opened_, buffers_.at("sums"), 1);
-  if (has_wide_) add_to(&sums->values, opened_, buffers_.at("wide"), 4294967296);
-  merge_counts(plan.layout, read_buffer<std::uint32_t>(opened_, buffers_.at("counts"), plan.layout.counts),
-               &sums->counts);
-  const auto events = read_buffer<std::int64_t>(opened_, buffers_.at("counters"), CLRAY_COUNTERS);
-  for (std::size_t c = 0; c < CLRAY_COUNTERS; ++c) sums->events[c] += static_cast<std::uint64_t>(events[c]);
+  for (const SumBlock& block : plan.layout.blocks) {
+    const SumRange range = range_of(plan.layout, block, asked_.front(), asked_.back() + 1);
+    if (block.counts()) {
+      const bool greatest = block.scale == SumScale::greatest;
+      each_piece<std::uint32_t>(opened_, buffers_.at("counts"), range, [&](std::uint64_t first, const auto& more) {
+        for (std::size_t k = 0; k < more.size(); ++k) {
+          std::uint64_t& sum = sums->counts[first + k];
+          sum = greatest ? std::max<std::uint64_t>(sum, more[k]) : sum + more[k];
+        }
+      });
+      continue;
+    }
+    const auto add = [&](const char* buffer, std::int64_t unit) {
+      each_piece<std::int64_t>(opened_, buffers_.at(buffer), range, [&](std::uint64_t first, const auto& more) {
+        for (std::size_t k = 0; k < more.size(); ++k) sums->values[first + k] += static_cast<Sum>(more[k]) * unit;
+      });
+    };
+    add("sums", 1);
+    if (has_wide_) add("wide", 4294967296);
+  }
+  const auto events =
+      read_buffer<std::int64_t>(opened_, buffers_.at("counters"), CLRAY_COUNTERS * plan.layout.shape.views);
+  for (std::size_t k = 0; k < events.size(); ++k)
+    sums->events[k / CLRAY_COUNTERS][k % CLRAY_COUNTERS] += static_cast<std::uint64_t>(events[k]);
   clear(plan);
 }
 

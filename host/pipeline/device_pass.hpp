@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "device/program.hpp"
 #include "pipeline/pass_buffers.hpp"
@@ -25,12 +26,13 @@ class DevicePass {
   DevicePass(OpenedDevice& device, const PassPlan& plan, const Geometry& geometry,
              const KernelFiles& files = embedded_kernels());
 
-  void set_epoch(std::uint32_t epoch);
+  /// What the next launches trace: points of an epoch's scrambles, of these views (ascending).
+  void set_work(std::uint32_t epoch, const std::vector<std::uint32_t>& views);
   /// Runs work-items first … first + items - 1 of a block; returns when they are done.
   void launch_items(std::uint64_t first, std::uint32_t items, const PointBlock& block, std::uint32_t group);
-  /// Adds everything that was summed to *sums, and clears it.
+  /// Adds everything that was summed for the views of set_work() to *sums, and clears it.
   void drain(const PassPlan& plan, Sums* sums);
-  /// Sets everything that is summed to zero.
+  /// Sets everything that is summed for these views to zero.
   void clear(const PassPlan& plan);
 
   std::uint64_t slice_items = 4096;  ///< of the next launch
@@ -42,6 +44,7 @@ class DevicePass {
   cl::Kernel kernel_;
   std::map<std::string, cl::Buffer> buffers_;  // by the names of shared/buffers.h
   ClrayPass constants_;
+  std::vector<std::uint32_t> asked_;  // views that launches trace
   bool has_wide_ = false;
   cl_uint first_argument_ = 0;  // behind the buffers
 };

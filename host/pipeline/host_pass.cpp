@@ -58,11 +58,10 @@ bool host_has_room(const PassPlan& plan) {
   return n.CLRAY_LANES_ <= CLRAY_LANE_ROOM && n.CLRAY_KEPT_ <= CLRAY_KEPT_ROOM;
 }
 
-std::uint64_t items_of(const PassPlan& plan, std::uint32_t points, std::uint32_t chunk) {
+std::uint64_t items_of(const PassPlan& plan, std::size_t views, std::uint32_t points, std::uint32_t chunk) {
   const PictureSize& size = plan.request.picture;
   const std::uint64_t pixels = plan.request.pixels ? static_cast<std::uint64_t>(size.width) * size.height : 1;
-  return (static_cast<std::uint64_t>(points) + chunk - 1) / chunk * plan.request.replicates * pixels *
-         plan.beams.views.size();
+  return (static_cast<std::uint64_t>(points) + chunk - 1) / chunk * plan.request.replicates * pixels * views;
 }
 
 Sums trace_on_host(const PassPlan& plan, const Geometry& geometry, std::uint32_t points, std::uint32_t chunk) {
@@ -71,19 +70,20 @@ Sums trace_on_host(const PassPlan& plan, const Geometry& geometry, std::uint32_t
   numbers = numbers_of(plan.program.options);
   std::vector<i64> sums(in.sums.count), wide(in.wide.count), counters(in.counters.count);
   std::vector<u32> counts(in.counts.count);
-  const std::uint64_t items = items_of(plan, points, chunk);
+  const std::uint64_t items = items_of(plan, plan.beams.views.size(), points, chunk);
   for (global_id = 0; global_id < items; ++global_id) {
-    clray_trace(in.pass.data, in.views.data, in.connections.data, in.nodes.data, in.primitives.data, in.shapes.data,
-                in.instances.data, in.materials.data, in.tables.data, in.directions.data, in.detectors.data,
-                in.blocks.data, in.settings.data, in.strata.data, sums.data(), wide.data(), counts.data(),
-                counters.data(), 0, static_cast<u32>(items), 0, points, chunk);
+    clray_trace(in.pass.data, in.views.data, in.asked.data, in.connections.data, in.nodes.data, in.primitives.data,
+                in.shapes.data, in.instances.data, in.materials.data, in.tables.data, in.directions.data,
+                in.detectors.data, in.blocks.data, in.settings.data, in.strata.data, sums.data(), wide.data(),
+                counts.data(), counters.data(), 0, static_cast<u32>(items), 0, points, chunk);
   }
-  Sums out;
-  out.points = points;
+  Sums out(plan.layout);
+  for (std::uint64_t& view : out.points) view = points;
   for (std::size_t k = 0; k < sums.size(); ++k)
-    out.values.push_back(sums[k] + (wide.size() == sums.size() ? static_cast<Sum>(wide[k]) * 4294967296 : 0));
+    out.values[k] = sums[k] + (wide.size() == sums.size() ? static_cast<Sum>(wide[k]) * 4294967296 : 0);
   out.counts.assign(counts.begin(), counts.end());
-  for (std::size_t c = 0; c < CLRAY_COUNTERS; ++c) out.events[c] = static_cast<std::uint64_t>(counters[c]);
+  for (std::size_t k = 0; k < counters.size(); ++k)
+    out.events[k / CLRAY_COUNTERS][k % CLRAY_COUNTERS] = static_cast<std::uint64_t>(counters[k]);
   return out;
 }
 

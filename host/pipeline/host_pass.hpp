@@ -16,7 +16,7 @@ Sums trace_on_host(const PassPlan& plan, const Geometry& geometry, std::uint32_t
 /// Whether the pass has no more lanes, and no more sums that work-items keep, than the host's kernels have room for.
 bool host_has_room(const PassPlan& plan);
 
-/// Work-items of a block of that many points.
-std::uint64_t items_of(const PassPlan& plan, std::uint32_t points, std::uint32_t chunk);
+/// Work-items of a block of that many points of that many views.
+std::uint64_t items_of(const PassPlan& plan, std::size_t views, std::uint32_t points, std::uint32_t chunk);
 
 }  // namespace clray

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 
+#include "clray/error.hpp"
 #include "pipeline/detector/room.hpp"
 #include "pipeline/detector/sums.hpp"
 #include "pipeline/estimate.hpp"
@@ -20,7 +22,8 @@ const DetectorRoom& room(const PassDetector& detector) {
 }
 
 void add_counters(const Sums& sums, Result* out) {
-  const auto& n = sums.events;
+  std::array<std::uint64_t, CLRAY_COUNTERS> n{};
+  for (const auto& view : sums.events) std::transform(n.begin(), n.end(), view.begin(), n.begin(), std::plus<>());
   out->diagnostics.non_finite += n[CLRAY_COUNT_NON_FINITE];
   out->diagnostics.stack_overflow += n[CLRAY_COUNT_STACK];
   out->diagnostics.lost_rays += n[CLRAY_COUNT_LOST];
@@ -86,16 +89,24 @@ bool same_record(const ResultKey& a, const ResultKey& b) {
          a.orientation == b.orientation;
 }
 
-std::vector<Target> targets_of(const PassPlan& plan, const Geometry& geometry, const Sums& sums) {
+std::vector<Target> targets_of(const PassPlan& plan, const Geometry& geometry, const Sums& sums, std::size_t view) {
   std::vector<Target> targets;
   if (plan.request.paints()) return targets;
   const SumReader read(plan, sums);
   for (const PassDetector& detector : plan.detectors) {
     if (!detector.asked) continue;
     const auto add = room(detector).targets != nullptr ? room(detector).targets : sums_targets;
-    add(plan, detector, read, geometry, &targets);
+    add({plan, detector, read, geometry, view}, &targets);
   }
   return targets;
+}
+
+double picture_error(const PassPlan& plan, const Geometry& geometry, const Sums& sums, std::size_t view) {
+  const SumReader read(plan, sums);
+  for (const PassDetector& detector : plan.detectors) {
+    if (const auto error = room(detector).picture_error) return error({plan, detector, read, geometry, view});
+  }
+  throw Error(ErrorCode::bug, "no detector of this pass paints", "picture_error");
 }
 
 void add_results(const Scene& scene, const PassPlan& plan, const PassOutcome& outcome, Result* result,
@@ -130,9 +141,11 @@ void order_results(const Scene& scene, Result* result) {
 }
 
 std::uint64_t digest_of(std::uint64_t state, const PassPlan& plan, const Sums& sums) {
-  const std::uint64_t head[3] = {static_cast<std::uint64_t>(plan.scales.weight_bits), plan.request.replicates,
-                                 sums.points};
-  state = fnv1a(state, head, sizeof head);
+  for (std::size_t v = 0; v < sums.points.size(); ++v) {
+    const std::uint64_t head[3] = {static_cast<std::uint64_t>(plan.scales.views[v].weight_bits),
+                                   plan.request.replicates, sums.points[v]};
+    state = fnv1a(state, head, sizeof head);
+  }
   // The generic program has more detectors than the scene asked for; those do not count.
   for (const PassDetector& d : plan.detectors) {
     if (d.asked) state = digest_values(state, plan.layout, sums, d.first_block, d.last_block);

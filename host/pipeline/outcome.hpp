@@ -23,8 +23,8 @@ struct PassOutcome {
   Sums sums;
   bool partial = false;
   bool target_asked = false, target_reached = false;
-  Ending ending;
-  std::uint64_t rays_total = 0;  ///< per view, all phases
+  Ending ending;                 ///< of the view that missed the target by most, else of the one with the largest error
+  std::uint64_t rays_total = 0;  ///< over all views and phases
   std::vector<ErrorPoint> errors;
 };
 
@@ -34,8 +34,11 @@ struct Target {
   double scale = 0.0;                           ///< what the half-width is compared with; 0: the value itself
 };
 
-/// Every total of a pass, in result units.
-std::vector<Target> targets_of(const PassPlan& plan, const Geometry& geometry, const Sums& sums);
+/// Every total of a view, in result units.
+std::vector<Target> targets_of(const PassPlan& plan, const Geometry& geometry, const Sums& sums, std::size_t view);
+
+/// The relative standard error of a view's picture: root mean square over its pixels. NaN where all are black.
+double picture_error(const PassPlan& plan, const Geometry& geometry, const Sums& sums, std::size_t view);
 
 /// Largest relative standard error over the targets (NaN if all are zero), and the first target's value and error, from
 /// `rays` of each replicate.

@@ -2,6 +2,8 @@
 // See pass_buffers.hpp.
 #include "pipeline/pass_buffers.hpp"
 
+#include <numeric>
+
 #include "beam/sobol.hpp"
 
 namespace clray {
@@ -14,6 +16,12 @@ Numbers<T> all_of(const std::vector<T>& values) {
 
 }  // namespace
 
+std::vector<std::uint32_t> all_views(const PassPlan& plan) {
+  std::vector<std::uint32_t> views(plan.beams.views.size());
+  std::iota(views.begin(), views.end(), 0u);
+  return views;
+}
+
 PassBuffers::PassBuffers(const PassPlan& plan, const Geometry& geometry) {
   for (const SumBlock& block : plan.layout.blocks) own_blocks_.push_back({block.offset, block.width, 0});
   for (const PassDetector& detector : plan.detectors) {
@@ -23,6 +31,8 @@ PassBuffers::PassBuffers(const PassPlan& plan, const Geometry& geometry) {
   own_directions_ = sobol_directions_reversed();
   pass = {&plan.constants, 1};
   views = all_of(plan.beams.views);
+  own_asked_ = all_views(plan);
+  asked = all_of(own_asked_);
   connections = all_of(plan.beams.connections);
   nodes = all_of(plan.beams.nodes);
   primitives = all_of(geometry.primitives);
@@ -39,7 +49,7 @@ PassBuffers::PassBuffers(const PassPlan& plan, const Geometry& geometry) {
   sums.count = plan.layout.values;
   wide.count = wide_too ? plan.layout.values : 1;
   counts.count = plan.layout.counts;
-  counters.count = CLRAY_COUNTERS;
+  counters.count = CLRAY_COUNTERS * plan.beams.views.size();
 }
 
 }  // namespace clray

@@ -19,6 +19,9 @@ struct Numbers {
   std::size_t count = 0;
 };
 
+/// The numbers of all views, in order.
+std::vector<std::uint32_t> all_views(const PassPlan& plan);
+
 /// The buffers of a pass. Plan and geometry must outlive it.
 class PassBuffers {
  public:
@@ -34,7 +37,7 @@ class PassBuffers {
   std::vector<ClrayBlock> own_blocks_;
   std::vector<ClrayDetector> own_detectors_;
   std::vector<double> own_settings_;
-  std::vector<std::uint32_t> own_directions_;
+  std::vector<std::uint32_t> own_directions_, own_asked_;
 };
 
 }  // namespace clray

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <exception>
 #include <mutex>
+#include <optional>
 #include <thread>
 
 #include "clray/error.hpp"
@@ -40,27 +41,27 @@ PassRunner::PassRunner(Device& device, const PassPlan& plan, const Geometry& geo
 
 PassRunner::~PassRunner() = default;
 
-bool PassRunner::run(Sums* sums, std::uint64_t points, std::uint32_t epoch,
+bool PassRunner::run(Sums* sums, const std::vector<std::uint32_t>& views, std::uint64_t points, std::uint32_t epoch,
                      const std::function<bool(double)>& keep_going) {
-  for (auto& device : devices_) device->set_epoch(epoch);
-  const std::uint64_t begin = sums->points;
+  for (auto& device : devices_) device->set_work(epoch, views);
+  const std::uint64_t begin = sums->points[views.front()];
   const std::uint64_t bounces = static_cast<std::uint64_t>(plan_.traits.max_bounces) + 1;
   std::uint64_t block = kMostContributions / (2 * bounces);  // a bounce enters a book at most twice
   while ((block & (block - 1)) != 0) block &= block - 1;     // a power of two keeps neighbouring points together
   if (options_.slice_points != 0) block = std::min(block, options_.slice_points);
   std::uint64_t at = begin, undrained = 0;
-  Sums before;  // copied only if sums must be drained before the end, since those of pictures are large
+  std::optional<Sums> before;  // copied only if sums must be drained before the end, since those of pictures are large
   while (at < points) {
     const std::uint64_t count = std::min(points - at, block);
     const double done = static_cast<double>(at - begin), all = static_cast<double>(points - begin);
     const auto ask = [&](double share) { return keep_going((done + share * static_cast<double>(count)) / all); };
     if ((undrained + count) * 2 * bounces > kMostContributions) {
-      if (before.values.empty()) before = *sums;
+      if (!before) before = *sums;
       drain(sums);
       undrained = 0;
     }
-    if (!run_block(static_cast<std::uint32_t>(at), static_cast<std::uint32_t>(count), ask)) {
-      if (!before.values.empty()) *sums = std::move(before);
+    if (!run_block(views.size(), static_cast<std::uint32_t>(at), static_cast<std::uint32_t>(count), ask)) {
+      if (before) *sums = std::move(*before);
       for (auto& device : devices_) device->clear(plan_);
       return false;
     }
@@ -68,14 +69,14 @@ bool PassRunner::run(Sums* sums, std::uint64_t points, std::uint32_t epoch,
     undrained += count;
   }
   drain(sums);
-  sums->points = points;
+  for (const std::uint32_t v : views) sums->points[v] = points;
   return true;
 }
 
-bool PassRunner::run_block(std::uint32_t first_point, std::uint32_t points,
+bool PassRunner::run_block(std::size_t views, std::uint32_t first_point, std::uint32_t points,
                            const std::function<bool(double)>& keep_going) {
   const std::uint32_t chunk = std::min(kChunk, points);
-  WorkSource source(items_of(plan_, points, chunk));
+  WorkSource source(items_of(plan_, views, points, chunk));
   std::atomic<bool> go{true};
   std::mutex mutex;
   std::exception_ptr failure;

@@ -21,16 +21,19 @@ class PassRunner {
   PassRunner(Device& device, const PassPlan& plan, const Geometry& geometry, const TraceOptions& options);
   ~PassRunner();
 
-  /// Adds points [sums->points, points) of epoch `epoch` to *sums. `keep_going` is asked between launches with the
-  /// share done; when it says no, returns false and *sums is as it was.
-  bool run(Sums* sums, std::uint64_t points, std::uint32_t epoch, const std::function<bool(double)>& keep_going);
+  /// Adds points up to `points` of epoch `epoch` to *sums for `views` (ascending), which have as many so far, all of
+  /// them. `keep_going` is asked between launches with the share done; when it says no, returns false and *sums is as
+  /// it was.
+  bool run(Sums* sums, const std::vector<std::uint32_t>& views, std::uint64_t points, std::uint32_t epoch,
+           const std::function<bool(double)>& keep_going);
 
   /// Seconds spent building programs.
   double compile_seconds() const { return compile_seconds_; }
 
  private:
   void drain(Sums* sums);
-  bool run_block(std::uint32_t first_point, std::uint32_t points, const std::function<bool(double)>& keep_going);
+  bool run_block(std::size_t views, std::uint32_t first_point, std::uint32_t points,
+                 const std::function<bool(double)>& keep_going);
 
   const PassPlan& plan_;
   const TraceOptions& options_;

@@ -30,17 +30,16 @@ PathTraits traits_of(const Scene& scene, const PassRequest& request, const Mater
   return t;
 }
 
-/// The bound of first-bounce weights. The scale of the sums follows from it, and so depends on the scene alone.
-double first_bound(const PassPlan& plan) {
+/// The bound of a view's first-bounce weights. The scale of its sums follows from it, and so depends on the scene and
+/// the view alone.
+double first_bound(const PassPlan& plan, std::size_t v) {
   double bound = 0.0;
-  for (std::size_t v = 0; v < plan.beams.views.size(); ++v) {
-    const double* s = plan.beams.views[v].toward;
-    for (std::uint32_t c = 0; c < plan.traits.connections; ++c) {
-      const double* o = plan.beams.connections[v * plan.traits.connections + c].direction;
-      const double x = s[0] + o[0], y = s[1] + o[1], z = s[2] + o[2];
-      const double cos_half = 0.5 * std::sqrt(std::fma(x, x, std::fma(y, y, z * z)));
-      bound = std::max(bound, weight_bound(plan.materials, std::max(cos_half, 1e-6)));
-    }
+  const double* s = plan.beams.views[v].toward;
+  for (std::uint32_t c = 0; c < plan.traits.connections; ++c) {
+    const double* o = plan.beams.connections[v * plan.traits.connections + c].direction;
+    const double x = s[0] + o[0], y = s[1] + o[1], z = s[2] + o[2];
+    const double cos_half = 0.5 * std::sqrt(std::fma(x, x, std::fma(y, y, z * z)));
+    bound = std::max(bound, weight_bound(plan.materials, std::max(cos_half, 1e-6)));
   }
   return bound;
 }
@@ -49,26 +48,37 @@ constexpr int kSumBits = 62 - 24;  // of a slice's 2^24 contributions, each belo
 
 Scales scales_of(const Scene& scene, const Geometry& geometry, const PassPlan& plan) {
   Scales scales;
-  const double bound = first_bound(plan);
-  int exponent = 0;
-  if (bound > 0.0) std::frexp(bound * (1.0 + 0x1p-20), &exponent);
-  scales.weight_bits = kSumBits - exponent;
-  const double low = plan.paths.low(), high = plan.paths.high();
-  scales.path_middle_m = 0.5 * low + 0.5 * high;
-  scales.path_half_m = std::max(0.5 * (high - low), std::ldexp(geometry.radius, -10)) * (1.0 + 0x1p-20);
+  for (std::size_t v = 0; v < plan.beams.views.size(); ++v) {
+    ViewScales view;
+    const double bound = first_bound(plan, v);
+    int exponent = 0;
+    if (bound > 0.0) std::frexp(bound * (1.0 + 0x1p-20), &exponent);
+    view.weight_bits = kSumBits - exponent;
+    const auto [low, high] = plan.paths.view(v);
+    view.path_middle_m = 0.5 * low + 0.5 * high;
+    view.path_half_m = std::max(0.5 * (high - low), std::ldexp(geometry.radius, -10)) * (1.0 + 0x1p-20);
+    scales.views.push_back(view);
+  }
   double lever = 0.0;
   for (int i = 0; i < 3; ++i) lever += std::fabs(geometry.centre[i] - scene.reference_point[i]);
   scales.lever_m = std::ldexp(1.0, std::ilogb(std::max(lever + geometry.radius, 1e-300)) + 1);
   return scales;
 }
 
+void set_scales(const Scales& scales, std::vector<ClrayView>* views) {
+  for (std::size_t v = 0; v < views->size(); ++v) {
+    const ViewScales& s = scales.views[v];
+    ClrayView& view = (*views)[v];
+    view.weight_scale = std::ldexp(1.0, s.weight_bits);
+    view.weight_limit = std::ldexp(1.0, kSumBits - s.weight_bits);
+    view.path_middle_m = s.path_middle_m;
+    view.inv_path_per_m = 1.0 / s.path_half_m;
+  }
+}
+
 ClrayPass constants_of(const Scene& scene, const PassPlan& plan) {
   ClrayPass k{};
-  k.weight_scale = std::ldexp(1.0, plan.scales.weight_bits);
-  k.weight_limit = std::ldexp(1.0, kSumBits - plan.scales.weight_bits);
   k.unit_scale = std::ldexp(1.0, CLRAY_UNIT_BITS);
-  k.path_middle_m = plan.scales.path_middle_m;
-  k.inv_path_per_m = 1.0 / plan.scales.path_half_m;
   for (int i = 0; i < 3; ++i) k.reference[i] = scene.reference_point[i];
   k.inv_lever_per_m = 1.0 / plan.scales.lever_m;
   k.key0 = static_cast<std::uint32_t>(scene.trace.seed);
@@ -174,8 +184,9 @@ PassPlan plan_pass(const Scene& scene, const Geometry& geometry, PassRequest req
   if (reflectances && (plan.traits.scatter || !scene.trace.specialise))
     plan.materials = material_table(scene, plan.request.lanes, true);
   plan.beams = build_beams(scene, geometry, plan.request);
-  plan.paths = path_range(scene, geometry, plan.request, plan.beams);
+  plan.paths = path_ranges(scene, geometry, plan.request, plan.beams);
   plan.scales = scales_of(scene, geometry, plan);
+  set_scales(plan.scales, &plan.beams.views);
   plan.detectors = detectors_of(scene, geometry, plan);
   plan.layout = layout_of(plan, &plan.detectors);
   plan.beams = stratified(

@@ -29,11 +29,15 @@ struct PassRequest : BeamRequest {
   std::uint32_t replicates = 16;
 };
 
-/// The fixed-point scale of weights, and what lengths and levers are divided by.
-struct Scales {
+/// The fixed-point scale of a view's weights, and its middle and half of path lengths.
+struct ViewScales {
   int weight_bits = 0;  ///< weights are summed as integers at 2^weight_bits
   double path_middle_m = 0.0, path_half_m = 1.0;
-  double lever_m = 1.0;  ///< a power of two
+};
+
+struct Scales {
+  std::vector<ViewScales> views;
+  double lever_m = 1.0;  ///< levers are divided by it; a power of two
 };
 
 /// A detector of a pass: a row of detector.def, with its sums.
@@ -63,7 +67,7 @@ struct PassPlan {
   PathTraits traits;
   MaterialTable materials;
   Beams beams;
-  PathRange paths;
+  PathRanges paths;
   Scales scales;
   std::vector<PassDetector> detectors;
   SumLayout layout;

@@ -13,18 +13,19 @@ namespace clray {
 class SumReader {
  public:
   SumReader(const PassPlan& plan, const Sums& sums)
-      : plan_(plan), sums_(sums), weight_(1.0 / plan.constants.weight_scale), unit_(1.0 / plan.constants.unit_scale) {}
+      : plan_(plan), sums_(sums), unit_(1.0 / plan.constants.unit_scale) {}
 
-  std::uint64_t points() const { return sums_.points; }
+  /// Of each replicate of a view (and pixel).
+  std::uint64_t points(std::size_t view) const { return sums_.points[view]; }
 
   /// m² of beam that one point of one replicate stands for.
-  double share(std::size_t view) const { return plan_.beams.area_m2[view] / static_cast<double>(sums_.points); }
+  double share(std::size_t view) const { return plan_.beams.area_m2[view] / static_cast<double>(points(view)); }
 
   /// Number k of the row of a view, lane and connection (0 where the block has none) and replicate r; m² or m²/sr.
   double value(std::uint32_t block, std::size_t view, std::size_t lane, std::size_t c, std::uint32_t r,
                std::uint64_t k) const {
     const SumBlock& b = plan_.layout.blocks[block];
-    const double scale = b.scale == SumScale::unit ? unit_ : weight_;
+    const double scale = b.scale == SumScale::unit ? unit_ : weight_unit(view);
     return static_cast<double>(sums_.values[at(b, view, lane, c, r) + k]) * scale * share(view);
   }
   /// The same of a block of counts.
@@ -34,7 +35,7 @@ class SumReader {
   }
   /// A weight's sum without its area: of pixels, radiance over irradiance times the points.
   double weight(std::uint32_t block, std::size_t view, std::size_t lane, std::uint32_t r, std::uint64_t k) const {
-    return static_cast<double>(sums_.values[at(plan_.layout.blocks[block], view, lane, 0, r) + k]) * weight_;
+    return static_cast<double>(sums_.values[at(plan_.layout.blocks[block], view, lane, 0, r) + k]) * weight_unit(view);
   }
 
  private:
@@ -47,14 +48,16 @@ class SumReader {
     return b.offset + row * b.width;
   }
 
+  double weight_unit(std::size_t view) const { return 1.0 / plan_.beams.views[view].weight_scale; }
+
   const PassPlan& plan_;
   const Sums& sums_;
-  double weight_, unit_;
+  double unit_;
 };
 
-/// Rays of a replicate, of a beam that the body fills.
-inline double rays_of(const SumReader& read) {
-  return static_cast<double>(read.points());
+/// Rays of a replicate of a view, of a beam that the body fills.
+inline double rays_of(const SumReader& read, std::size_t view) {
+  return static_cast<double>(read.points(view));
 }
 
 template <class Function>

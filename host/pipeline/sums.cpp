@@ -29,14 +29,31 @@ std::uint32_t SumLayout::add(const TableSum& sum, std::uint32_t width) {
   return static_cast<std::uint32_t>(blocks.size() - 1);
 }
 
-void merge_counts(const SumLayout& layout, const std::vector<std::uint32_t>& more, std::vector<std::uint64_t>* counts) {
+Sums::Sums(const SumLayout& layout)
+    : values(layout.values), counts(layout.counts), events(layout.shape.views), points(layout.shape.views) {}
+
+bool Sums::empty() const {
+  return std::all_of(points.begin(), points.end(), [](std::uint64_t n) { return n == 0; });
+}
+
+void Sums::set_view(const SumLayout& layout, std::size_t view, const Sums* other) {
   for (const SumBlock& block : layout.blocks) {
-    if (!block.counts()) continue;
-    for (std::uint64_t k = block.offset; k < block.offset + block.size(); ++k) {
-      std::uint64_t& sum = (*counts)[k];
-      sum = block.scale == SumScale::greatest ? std::max<std::uint64_t>(sum, more[k]) : sum + more[k];
+    const SumRange range = range_of(layout, block, view, view + 1);
+    for (std::uint64_t k = range.begin; k < range.end; ++k) {
+      if (block.counts()) {
+        counts[k] = other != nullptr ? other->counts[k] : 0;
+      } else {
+        values[k] = other != nullptr ? other->values[k] : 0;
+      }
     }
   }
+  events[view] = other != nullptr ? other->events[view] : std::array<std::uint64_t, CLRAY_COUNTERS>{};
+  points[view] = other != nullptr ? other->points[view] : 0;
+}
+
+SumRange range_of(const SumLayout& layout, const SumBlock& block, std::size_t first_view, std::size_t end_view) {
+  const std::uint64_t of_view = block.size() / layout.shape.views;
+  return {block.offset + first_view * of_view, block.offset + end_view * of_view};
 }
 
 std::uint64_t digest_values(std::uint64_t state, const SumLayout& layout, const Sums& sums, std::uint32_t first,

@@ -47,16 +47,28 @@ struct SumLayout {
   std::uint32_t add(const TableSum& sum, std::uint32_t width);
 };
 
-/// Integer sums of a pass so far; two runs of the same points have equal sums.
+/// Integer sums of a pass so far; two runs of the same points have equal sums. Views have points of their own.
 struct Sums {
   std::vector<Sum> values;  ///< at scale 2^S
   std::vector<std::uint64_t> counts;
-  std::array<std::uint64_t, CLRAY_COUNTERS> events{};  ///< CLRAY_COUNT_*
-  std::uint64_t points = 0;                            ///< per replicate and view (and pixel)
+  std::vector<std::array<std::uint64_t, CLRAY_COUNTERS>> events;  ///< of each view, CLRAY_COUNT_*
+  std::vector<std::uint64_t> points;                              ///< of each view, per replicate (and pixel)
+
+  Sums() = default;
+  /// Zeros for every view.
+  explicit Sums(const SumLayout& layout);
+
+  /// No view has any points.
+  bool empty() const;
+  /// Gives a view the sums that it has in `other`, or zeros.
+  void set_view(const SumLayout& layout, std::size_t view, const Sums* other);
 };
 
-/// Adds counts to *counts, block by block: sums add, maxima take the greater.
-void merge_counts(const SumLayout& layout, const std::vector<std::uint32_t>& more, std::vector<std::uint64_t>* counts);
+/// Numbers of a block that belong to views first … end - 1.
+struct SumRange {
+  std::uint64_t begin = 0, end = 0;
+};
+SumRange range_of(const SumLayout& layout, const SumBlock& block, std::size_t first_view, std::size_t end_view);
 
 /// FNV-1a over the blocks of a detector (numbers `first` to `last`), continued from `state`: the values of each block,
 /// or row by row its counts.

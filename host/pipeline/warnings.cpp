@@ -46,7 +46,11 @@ std::string few_replicates(const PassPlan& plan, const Geometry& geometry, const
   const double normal = normal_variance_of_variance(static_cast<int>(plan.request.replicates));
   int count = 0, doubtful = 0;
   double largest = 0.0;
-  for (const Target& target : targets_of(plan, geometry, sums)) {
+  std::vector<Target> targets;
+  for (std::size_t v = 0; v < sums.points.size(); ++v) {
+    for (Target& target : targets_of(plan, geometry, sums, v)) targets.push_back(std::move(target));
+  }
+  for (const Target& target : targets) {
     std::vector<Estimate> axes;
     double square = target.scale * target.scale;
     for (const auto& axis : target.components) {
@@ -118,7 +122,8 @@ std::vector<std::string> doubtful_claims(const PassPlan& plan, const Geometry& g
   if (plan.request.paints()) return warnings;
   const std::string few = few_replicates(plan, geometry, sums);
   if (!few.empty()) warnings.push_back(few);
-  const double rays = static_cast<double>(sums.points) * plan.request.replicates;
+  const std::uint64_t fewest = *std::min_element(sums.points.begin(), sums.points.end());
+  const double rays = static_cast<double>(fewest) * plan.request.replicates;
   const double share = plan.traits.connect && curved(geometry, rays) ? unseen_share(plan, sums) : 0.0;
   if (share > kUnseenShare) {
     warnings.push_back(

@@ -11,6 +11,7 @@
 
 #include "clray/error.hpp"
 #include "scene/file/material.hpp"
+#include "scene/file/value_checks.hpp"
 #include "scene/mesh/foreign_format.hpp"
 #include "scene/scene_parts.hpp"
 #include "scene/spectrum.hpp"
@@ -37,13 +38,10 @@ Scene bare_mesh(const std::string& path, const SceneOptions& options) {
 }
 
 Vec3 option_direction(const Vec3& v, const std::string& option) {
-  const double largest = std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
-  if (!std::isfinite(v.x) || !std::isfinite(v.y) || !std::isfinite(v.z) || largest == 0.0) {
+  if (!std::isfinite(v.x) || !std::isfinite(v.y) || !std::isfinite(v.z) || v == Vec3(0.0)) {
     throw Error(ErrorCode::usage, "expected three finite numbers X,Y,Z that are not all zero", option);
   }
-  const Vec3 u(v.x / largest, v.y / largest, v.z / largest);
-  const double length = std::sqrt(u.x * u.x + u.y * u.y + u.z * u.z);
-  return {u.x / length, u.y / length, u.z / length};
+  return unit_vector(v);
 }
 
 /// Lights a bare mesh by the Sun from over the viewer's left shoulder if only pictures are asked for. Light from the

@@ -28,7 +28,8 @@ static void detector_caustics_connect(const Buffers* g, Tally* tally, u32 n, u32
   for (u32 lane = 0; lane < CLRAY_LANES; ++lane) {
     if (weights->lane[lane] == 0.0) continue;
     accumulate(g->sums, g->wide, sum_row(g, d, CLRAY_CAUSTICS_RADIANCE, lane_row(g, tally, lane)) + pixel,
-               weights->lane[lane], g->pass->weight_scale, g->pass->weight_limit, g->counters);
+               weights->lane[lane], g->views[tally->view].weight_scale, g->views[tally->view].weight_limit,
+               g->counters);
   }
 }
 

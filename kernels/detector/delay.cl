@@ -22,8 +22,8 @@ static void detector_delay_connect(const Buffers* g, Tally* tally, u32 n, u32 c,
     const f64 w = weights->lane[lane];
     if (w == 0.0) continue;
     const u64 row = connection_row(g, tally, lane, c);
-    accumulate(g->sums, g->wide, sum_row(g, d, CLRAY_DELAY_BINS, row) + bin, w, g->pass->weight_scale,
-               g->pass->weight_limit, g->counters);
+    accumulate(g->sums, g->wide, sum_row(g, d, CLRAY_DELAY_BINS, row) + bin, w, g->views[tally->view].weight_scale,
+               g->views[tally->view].weight_limit, g->counters);
     atomic_inc(g->counts + sum_row(g, d, CLRAY_DELAY_HITS, row) + bin);
     i64* largest = tally->kept + CLRAY_KEPT_delay_largest + (n * CLRAY_LANES + lane) * CLRAY_CONNECTIONS + c;
     *largest = max(*largest, (i64)as_uint(convert_float_rtp(w)));

@@ -8,7 +8,8 @@ static void detector_intensity_connect(const Buffers* g, Tally* tally, u32 n, u3
                                        vec3 point) {
   (void)point;
   (void)n;
-  const f64 scale = g->pass->weight_scale, limit = g->pass->weight_limit;
+  const __global ClrayView* view = g->views + tally->view;
+  const f64 scale = view->weight_scale, limit = view->weight_limit;
   for (u32 lane = 0; lane < CLRAY_LANES; ++lane) {
     const f64 w = weights->lane[lane];
     if (w == 0.0) continue;
@@ -16,7 +17,7 @@ static void detector_intensity_connect(const Buffers* g, Tally* tally, u32 n, u3
     i64* own = tally->kept + CLRAY_KEPT_intensity_moments + 3u * (lane * CLRAY_CONNECTIONS + c);
     keep(g, own, at, w, scale, limit);
     if (!CLRAY_COUNT_delay) continue;
-    const f64 tau = (length - g->pass->path_middle_m) * g->pass->inv_path_per_m;
+    const f64 tau = (length - view->path_middle_m) * view->inv_path_per_m;
     keep(g, own + 1, at + 1u, w * tau, scale, limit);
     keep(g, own + 2, at + 2u, w * tau * tau, scale, limit);
   }

@@ -21,8 +21,8 @@ static void detector_pixels_connect(const Buffers* g, Tally* tally, u32 n, u32 c
   (void)length;
   for (u32 lane = 0; lane < CLRAY_LANES; ++lane) {
     const u64 at = sum_row(g, CLRAY_FIRST_pixels, 0u, lane_row(g, tally, lane)) + (tally->stream - 1u);
-    keep(g, tally->kept + CLRAY_KEPT_pixels_radiance + lane, at, weights->lane[lane], g->pass->weight_scale,
-         g->pass->weight_limit);
+    keep(g, tally->kept + CLRAY_KEPT_pixels_radiance + lane, at, weights->lane[lane],
+         g->views[tally->view].weight_scale, g->views[tally->view].weight_limit);
   }
 }
 

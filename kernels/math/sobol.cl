@@ -3,7 +3,8 @@
 // beyond them and for the plain random sampler. Dimensions 0-1 are the beam or the pixel; bounce k = 0, 1, … takes
 // 2+4k … 5+4k (lobe, two for the direction, roulette).
 // Scramble: hash-based nested uniform scramble of the bit-reversed number (Burley 2020, "Practical hash-based Owen
-// scrambling", with Vegdahl's 2021 constants), seeded by Philox(seed; replicate, group, epoch, stream), where
+// scrambling", with Vegdahl's 2021 constants), seeded by Philox(seed ^ key of the view; replicate, group, epoch,
+// stream), where
 // dimension d takes word (d+2) mod 4 of group (d+2)/4.
 #ifndef CLRAY_SOBOL_CL
 #define CLRAY_SOBOL_CL

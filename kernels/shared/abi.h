@@ -59,7 +59,8 @@ typedef struct ClrayInstance {
   u32 moved;  // 0: the part stands in the body frame, nothing to carry
 } ClrayInstance;
 
-/// One orientation of a pass: where its rays start.
+/// One view of a pass: where its rays start, and the scales of its sums. Nothing here depends on the other views, so
+/// that a view has the same sums alone and among others.
 typedef struct ClrayView {
   f64 toward[3];  // unit vector from the body to where rays start: s for a beam, o for pixels
   f64 corner[3];  // rays start at corner + u·edge_u + v·edge_v, u and v in (0,1)
@@ -71,6 +72,11 @@ typedef struct ClrayView {
   u32 grid;                   // cells along each edge of the rectangle
   // Share of a ray = share_scale·CLRAY_PIECE_PARTS·(area of piece / area of cell)/(width of strip·width of piece).
   f64 share_scale;
+  // Moments of delay are of tau = (path - path_middle_m)·inv_path_per_m, in [-1,1] for one bounce.
+  f64 path_middle_m, inv_path_per_m;
+  f64 weight_scale;  // 2^S for weights toward a connection
+  f64 weight_limit;  // larger weights go to the second accumulator
+  u32 key0, key1;    // of the view's own scrambles, see host/beam/beams.hpp
 } ClrayView;
 
 /// A stratum of the beam: a strip of a view, or a piece of a strip (host/beam/strata.hpp). A uniform 32-bit
@@ -117,11 +123,7 @@ typedef struct ClrayDetector {
 
 /// What is constant over a pass.
 typedef struct ClrayPass {
-  f64 reference[3];   // reference point of delay and torque
-  f64 path_middle_m;  // moments of delay are of tau = (path - middle)·inv_path, in [-1,1] for one bounce
-  f64 inv_path_per_m;
-  f64 weight_scale;     // 2^S for weights toward a connection
-  f64 weight_limit;     // larger weights go to the second accumulator
+  f64 reference[3];     // reference point of delay and torque
   f64 unit_scale;       // 2^S for shares of energy and momentum
   f64 inv_lever_per_m;  // power of two that brings lever arms below 1
   u32 key0, key1;       // the seed
@@ -155,12 +157,12 @@ typedef struct ClrayPass {
   X(ClrayPrimitive, 32)  \
   X(ClrayNode, 112)      \
   X(ClrayInstance, 136)  \
-  X(ClrayView, 152)      \
+  X(ClrayView, 192)      \
   X(ClrayStratum, 16)    \
   X(ClrayConnection, 48) \
   X(ClrayBlock, 16)      \
   X(ClrayDetector, 8)    \
-  X(ClrayPass, 112)
+  X(ClrayPass, 80)
 #ifdef __cplusplus
 #define CLRAY_ASSERT_SIZE(type, size) static_assert(sizeof(type) == size, "abi.h: " #type);
 CLRAY_SIZES(CLRAY_ASSERT_SIZE)

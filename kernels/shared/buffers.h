@@ -4,12 +4,14 @@
 #ifndef CLRAY_BUFFERS_H
 #define CLRAY_BUFFERS_H
 
-// What a pass reads: constants, where rays start and are connected to, the body, its surfaces, the Sobol numbers (bits
-// reversed), the detectors with their sums and settings, and the strata of the views' beams.
-// Then what it adds to: sums at the first and the second scale, counts, and the counters of events.
+// What a pass reads: constants, where rays start, which views a launch is asked for, what rays are connected to, the
+// body, its surfaces, the Sobol numbers (bits reversed), the detectors with their sums and settings, and the strata of
+// the views' beams. Then what it adds to: sums at the first and the second scale, counts, and the counters of events of
+// each view.
 #define CLRAY_BUFFERS(X)                             \
   X(const CLRAY_GLOBAL ClrayPass, pass)              \
   X(const CLRAY_GLOBAL ClrayView, views)             \
+  X(const CLRAY_GLOBAL u32, asked)                   \
   X(const CLRAY_GLOBAL ClrayConnection, connections) \
   X(const CLRAY_GLOBAL ClrayNode, nodes)             \
   X(const CLRAY_GLOBAL ClrayPrimitive, primitives)   \

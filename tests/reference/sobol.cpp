@@ -2,6 +2,8 @@
 // See sobol.hpp.
 #include "sobol.hpp"
 
+#include <cstring>
+
 namespace clray_reference {
 
 std::array<std::uint32_t, 4> philox(std::array<std::uint32_t, 2> key, std::array<std::uint32_t, 4> x) {
@@ -38,6 +40,19 @@ std::uint32_t owen_scramble(std::uint32_t fraction, std::uint32_t seed) {
   h ^= h * 0x05526c56u;
   h ^= h * 0x53a22864u;
   return mirrored(h);
+}
+
+std::uint64_t view_key(const std::vector<std::array<double, 3>>& directions) {
+  std::uint64_t key = 14695981039346656037ull;
+  for (const auto& direction : directions) {
+    for (double number : direction) {
+      if (number == 0.0) number = 0.0;  // negative zero counts as zero
+      std::uint64_t bits = 0;
+      std::memcpy(&bits, &number, sizeof bits);
+      for (int byte = 0; byte < 8; ++byte) key = (key ^ (bits >> 8 * byte & 0xff)) * 1099511628211ull;
+    }
+  }
+  return key;
 }
 
 std::array<double, 2> beam_point(const Sampling& sampling, std::uint32_t replicate, std::uint32_t index) {

@@ -19,9 +19,13 @@ std::uint32_t sobol_bits(std::uint32_t index, int dimension);
 /// Bit k of the result depends on bits 0 … k of the fraction alone, counted from the most significant.
 std::uint32_t owen_scramble(std::uint32_t fraction, std::uint32_t seed);
 
+/// The key of a view: FNV-1a (64 bits; Fowler, Noll & Vo) over the bytes of its direction to the source and those to
+/// its observers, each as three little-endian doubles.
+std::uint64_t view_key(const std::vector<std::array<double, 3>>& directions);
+
 /// How a run draws its beam points: TraceOptions of the same names.
 struct Sampling {
-  std::uint64_t seed = 1;
+  std::uint64_t seed = 1;   ///< exclusive or with the view's key
   std::uint32_t epoch = 0;  ///< 1 for the confirmation of a target
   bool sobol = true;
 };

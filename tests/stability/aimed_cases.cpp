@@ -95,7 +95,8 @@ MeshPtr cut_at(std::vector<Foot> feet) {
 
 Outcome aimed(bool sobol, int log2_rays) {
   constexpr std::uint64_t kSeed = 1;
-  std::vector<Foot> feet = clray_reference::beam_points({kSeed, 0, sobol}, 16, 1ull << log2_rays);
+  const std::uint64_t key = clray_reference::view_key({{0.0, 0.0, 1.0}, {0.0, 0.0, 1.0}});
+  std::vector<Foot> feet = clray_reference::beam_points({kSeed ^ key, 0, sobol}, 16, 1ull << log2_rays);
   std::sort(feet.begin(), feet.end());
   const auto same = [](const Foot& a, const Foot& b) { return a[0] == b[0]; };
   if (std::adjacent_find(feet.begin(), feet.end(), same) != feet.end())

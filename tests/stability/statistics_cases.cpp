@@ -30,9 +30,10 @@ struct Pass {
   clray::PassPlan plan = clray::plan_passes(scene, geometry).at(0);
 
   explicit Pass(Scene s) : scene(std::move(s)) {}
-  Sums run(std::uint64_t points, Sums sums = {}) const {
+  Sums run(std::uint64_t points) const { return run(points, Sums(plan.layout)); }
+  Sums run(std::uint64_t points, Sums sums) const {
     clray::PassRunner runner(device(), plan, geometry, scene.trace);
-    runner.run(&sums, points, 0, [](double) { return true; });
+    runner.run(&sums, {0}, points, 0, [](double) { return true; });
     return sums;
   }
   const clray::SumBlock& block(const char* detector, std::uint32_t sum) const {
@@ -53,8 +54,9 @@ Outcome last_points(bool sobol) {
   scene.trace.sobol = sobol;
   scene.trace.stratify = false;
   const Pass pass(scene);
-  Sums sums;
-  sums.points = kEnd - kCount;
+  const std::uint64_t key = clray_reference::view_key({{0.0, 0.0, 1.0}, {0.0, 0.0, 1.0}});
+  Sums sums(pass.plan.layout);
+  sums.points[0] = kEnd - kCount;
   sums = pass.run(kEnd, sums);
   Outcome outcome{true, ""};
   double worst = 0.0;
@@ -62,19 +64,19 @@ Outcome last_points(bool sobol) {
   for (std::uint32_t r = 0; r < kReplicates; ++r) {
     long double exact = 0.0L;
     for (std::uint64_t i = kEnd - kCount; i < kEnd; ++i) {
-      const auto p = clray_reference::beam_point({1, 0, sobol}, r, static_cast<std::uint32_t>(i));
+      const auto p = clray_reference::beam_point({1 ^ key, 0, sobol}, r, static_cast<std::uint32_t>(i));
       const long double x = 2.0L * p[0] - 1.0L, y = 2.0L * p[1] - 1.0L, square = 1.0L - x * x - y * y;
       if (square <= 0.0L) continue;
       exact += std::sqrt(square) / static_cast<long double>(kPi);
       ++expected_hits;
     }
-    const long double found = static_cast<long double>(pass.total(sums, r)) / pass.plan.constants.weight_scale;
+    const long double found = static_cast<long double>(pass.total(sums, r)) / pass.plan.beams.views[0].weight_scale;
     worst = std::max(worst, static_cast<double>(std::fabs(found - exact) / exact));
   }
   const clray::SumBlock& counts = pass.block("delay", 2);  // of bins from below to above the window
   const std::uint64_t hits = std::accumulate(sums.counts.begin() + counts.offset,
                                              sums.counts.begin() + counts.offset + counts.size(), std::uint64_t{0});
-  outcome.pass = worst <= kQuantumOfTotal && hits == expected_hits && sums.events[CLRAY_COUNT_NON_FINITE] == 0;
+  outcome.pass = worst <= kQuantumOfTotal && hits == expected_hits && sums.events[0][CLRAY_COUNT_NON_FINITE] == 0;
   outcome.measured = fmt::format("sums off by up to {:.1e}; {} hits of {}", worst, hits, expected_hits);
   return outcome;
 }
@@ -110,11 +112,10 @@ double plate_weight(const Pass& pass) {
 Outcome full() {
   constexpr std::uint64_t kPoints = 1ull << 23;
   Pass pass(plate(false));
-  pass.plan.constants.weight_limit = 2.0 * plate_weight(pass);
-  pass.plan.constants.weight_scale = 0x1p40 / plate_weight(pass);
-  Sums before;
+  pass.plan.beams.views[0].weight_limit = 2.0 * plate_weight(pass);
+  pass.plan.beams.views[0].weight_scale = 0x1p40 / plate_weight(pass);
+  Sums before(pass.plan.layout);
   before.values.assign(pass.plan.layout.values, static_cast<Sum>(INT64_MAX));
-  before.counts.assign(pass.plan.layout.counts, 0);
   const Sums sums = pass.run(kPoints, before);
   const Sum exact = static_cast<Sum>(INT64_MAX) + (static_cast<Sum>(kPoints) << 40);
   Outcome outcome{true, ""};
@@ -129,11 +130,11 @@ Outcome beyond(double units, bool counted) {
   constexpr std::uint64_t kPoints = 1ull << 16;
   Pass pass(plate(true));
   const double w = plate_weight(pass);
-  pass.plan.constants.weight_limit = 0.5 * w;
-  pass.plan.constants.weight_scale = units / w;
+  pass.plan.beams.views[0].weight_limit = 0.5 * w;
+  pass.plan.beams.views[0].weight_scale = units / w;
   const Sums sums = pass.run(kPoints);
   const Sum found = pass.total(sums, 0) + pass.total(sums, 1);
-  const std::uint64_t overflows = sums.events[CLRAY_COUNT_OVERFLOW];
+  const std::uint64_t overflows = sums.events[0][CLRAY_COUNT_OVERFLOW];
   const double each = static_cast<double>(found) / (2.0 * kPoints);
   const bool kept = std::fabs(each - units) <= 4.0 * 0x1p-53 * units && overflows == 0;
   return {counted ? found == 0 && overflows == 2 * kPoints : kept,
@@ -196,7 +197,8 @@ Outcome headroom() {
         scene.trace.max_bounces = bounces;
         const Pass pass(scene);
         const ClrayPass& k = pass.plan.constants;
-        const double weights = k.weight_limit * k.weight_scale, units = CLRAY_UNIT_LIMIT * k.unit_scale;
+        const ClrayView& view = pass.plan.beams.views[0];
+        const double weights = view.weight_limit * view.weight_scale, units = CLRAY_UNIT_LIMIT * k.unit_scale;
         most = std::max({most, weights * 0x1p24, units * 0x1p24});
         ++plans;
       }

@@ -17,7 +17,8 @@ const KernelFiles kFiles = {
     {"brdf/brdf.def",
      "// BRDF(no, \"a comment\", \"\", \"\")\nBRDF(red, \"red\", \"\", \"x\")\nBRDF(green, \"g\", \"\", \"x\")\n"
      "BRDF(blue, \"b\", \"\", \"x\")\n"},
-    {"shape/shape.def", "SHAPE(grid, \"mesh\", \"flat faces\", \"\", \"x\")\nSHAPE(sphere, \"sphere\", \"flat\", \"\", \"x\")\n"},
+    {"shape/shape.def",
+     "SHAPE(grid, \"mesh\", \"flat faces\", \"\", \"x\")\nSHAPE(sphere, \"sphere\", \"flat\", \"\", \"x\")\n"},
     {"detector/detector.def", "DETECTOR(delay, \"delay\", beam, \"\", \"x\")\n"},
     {"brdf/red.cl", "int red;\n"},
     {"brdf/blue.cl", "#include \"a.h\"\nint blue;\n"},

@@ -3,6 +3,7 @@
 // state of another goes on alike. Expected steps follow from the rule (docs/physics.md, section 6) by hand.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -82,7 +83,7 @@ TEST_CASE("the cap ends a search, zero totals end it as n/a, and an interrupt le
   CHECK(cut.state().error == 0.04);
 }
 
-TEST_CASE("blocks of sums: rows, offsets, and maxima beside counts") {
+TEST_CASE("blocks of sums: rows, offsets, and what belongs to a view") {
   SumLayout layout;
   layout.shape = {2, 3, 4, 5};
   const TableSum values{"a", SumRows::connection, "3", SumScale::weight, SumKeep::nothing, ""};
@@ -93,10 +94,26 @@ TEST_CASE("blocks of sums: rows, offsets, and maxima beside counts") {
   CHECK(layout.values == 2 * 3 * 4 * 5 * 3);
   CHECK(layout.counts == 2 * 3 * 5 + 2 * 7);
   CHECK(layout.blocks[2].offset == 2 * 3 * 5);
-  std::vector<std::uint64_t> counts(layout.counts, 4);
-  merge_counts(layout, std::vector<std::uint32_t>(layout.counts, 3), &counts);
-  CHECK(counts.front() == 4);  // the greater
-  CHECK(counts.back() == 7);   // the sum
+  const SumRange second = range_of(layout, layout.blocks[0], 1, 2);
+  CHECK(second.begin == 3 * 4 * 5 * 3);
+  CHECK(second.end == 2 * 3 * 4 * 5 * 3);
+  const SumRange hits_of_second = range_of(layout, layout.blocks[2], 1, 2);
+  CHECK(hits_of_second.begin == 2 * 3 * 5 + 7);
+  CHECK(hits_of_second.end == 2 * 3 * 5 + 2 * 7);
+  Sums a(layout), b(layout);
+  CHECK(a.empty());
+  std::fill(b.values.begin(), b.values.end(), 5);
+  std::fill(b.counts.begin(), b.counts.end(), 6);
+  b.points = {7, 8};
+  a.set_view(layout, 1, &b);
+  CHECK(std::count(a.values.begin(), a.values.end(), 5) == 3 * 4 * 5 * 3);
+  CHECK(a.values.front() == 0);
+  CHECK(a.values.back() == 5);
+  CHECK(std::count(a.counts.begin(), a.counts.end(), 6u) == 3 * 5 + 7);
+  CHECK(a.points == std::vector<std::uint64_t>{0, 8});
+  b.set_view(layout, 0, nullptr);
+  CHECK(b.values == a.values);
+  CHECK(b.counts == a.counts);
 }
 
 TEST_CASE("a table of reflectance follows a step, a root at grazing incidence and a kink between its nodes") {

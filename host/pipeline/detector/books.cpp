@@ -22,6 +22,8 @@ EnergyBooks books_of(const RoomResults& x, const LaneRecord& record) {
   Estimate* entries[CLRAY_BOOKS] = {&e.incident_m2, &e.reflected_m2, &e.absorbed_m2,
                                     &e.roulette_m2, &e.truncated_m2, &e.unconnected_specular_m2};
   const std::size_t views = x.plan.layout.shape.views;
+  double rays = rays_of(x.read, 0);
+  for (std::size_t v = 1; v < views; ++v) rays = std::min(rays, rays_of(x.read, v));
   for (int which = 0; which < CLRAY_BOOKS; ++which) {
     std::vector<double> mean(x.plan.request.replicates, 0.0);
     for (std::size_t v = 0; v < views; ++v) {
@@ -29,7 +31,7 @@ EnergyBooks books_of(const RoomResults& x, const LaneRecord& record) {
       for (std::size_t r = 0; r < mean.size(); ++r) mean[r] += one[r];
     }
     for (double& m : mean) m /= static_cast<double>(views);
-    *entries[which] = estimate_total(mean, rays_of(x.read));
+    *entries[which] = estimate_total(mean, rays);
   }
   return e;
 }
@@ -55,7 +57,7 @@ void books_results(const RoomResults& x) {
 }
 
 // The books have no total that a target could be about.
-void no_targets(const PassPlan&, const PassDetector&, const SumReader&, const Geometry&, std::vector<Target>*) {}
+void no_targets(const TargetContext&, std::vector<Target>*) {}
 
 }  // namespace
 

@@ -37,8 +37,8 @@ std::vector<double> delay_settings(const RoomContext& x) {
   const double bin_ps = detector_value(x.spec, "bin_ps");
   const double least = std::ldexp(2.0 * x.geometry.radius, -10);
   std::vector<double> settings{0.0};
-  for (std::size_t c = 0; c < x.plan.paths.low_m.size(); ++c) {
-    const double low = x.plan.paths.low_m[c], high = x.plan.paths.high_m[c];
+  for (std::size_t c = 0; c < x.plan.paths.connections; ++c) {
+    const auto [low, high] = x.plan.paths.connection(c);
     const double margin = std::max((high - low) / std::max(1.0, asked_bins - 2.0), least);
     const double first = std::isnan(start_ns) ? low - margin : start_ns * kMetresPerNs;
     const double last = std::isnan(stop_ns) ? high + margin : stop_ns * kMetresPerNs;
@@ -71,8 +71,9 @@ void delay_moments(const PassPlan& plan, const SumReader& read, std::size_t v, s
     for (std::uint32_t r = 0; r < plan.request.replicates; ++r)
       pooled[k] += intensity_moment(plan, read, v, l, c, r, k);
   }
-  const double to_s = plan.scales.path_half_m / constants::kLightSpeed_m_s;
-  const double middle_s = plan.scales.path_middle_m / constants::kLightSpeed_m_s;
+  const ViewScales& scales = plan.scales.views[v];
+  const double to_s = scales.path_half_m / constants::kLightSpeed_m_s;
+  const double middle_s = scales.path_middle_m / constants::kLightSpeed_m_s;
   const auto mean_of = [&](const double* s) { return middle_s + s[1] / s[0] * to_s; };
   const auto width_of = [&](const double* s) {
     const double mean = s[1] / s[0];
@@ -167,16 +168,13 @@ void delay_results(const RoomResults& x) {
 }
 
 /// The totals of delay and spectrometer for a run's target: A of every connection.
-void intensity_targets(const PassPlan& plan, const PassDetector&, const SumReader& read, const Geometry&,
-                       std::vector<Target>* targets) {
-  const SumShape& shape = plan.layout.shape;
-  for (std::size_t v = 0; v < shape.views; ++v) {
-    for (std::size_t l = 0; l < shape.lanes; ++l) {
-      for (std::size_t c = 0; c < shape.connections; ++c) {
-        Target t;
-        t.components.push_back(intensities(plan, read, v, l, c));
-        targets->push_back(std::move(t));
-      }
+void intensity_targets(const TargetContext& x, std::vector<Target>* targets) {
+  const SumShape& shape = x.plan.layout.shape;
+  for (std::size_t l = 0; l < shape.lanes; ++l) {
+    for (std::size_t c = 0; c < shape.connections; ++c) {
+      Target t;
+      t.components.push_back(intensities(x.plan, x.read, x.view, l, c));
+      targets->push_back(std::move(t));
     }
   }
 }

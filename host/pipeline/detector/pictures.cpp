@@ -4,6 +4,7 @@
 // halves: their difference is the error.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "pipeline/detector/room.hpp"
 #include "pipeline/detector/rooms.hpp"
@@ -30,7 +31,7 @@ ImageResult new_image(const RoomResults& x, const ResultKey& key, std::size_t v)
   image.centre_right_m = frame.centre_right_m[v];
   image.centre_up_m = frame.centre_up_m[v];
   const std::uint32_t block = find_detector(x.plan, "pixels")->first_block + kCovered;
-  const double samples = static_cast<double>(x.read.points()) * x.plan.request.replicates;
+  const double samples = static_cast<double>(x.read.points(v)) * x.plan.request.replicates;
   const std::uint64_t pixels = static_cast<std::uint64_t>(size.width) * size.height;
   for (std::uint64_t p = 0; p < pixels; ++p)
     image.coverage.push_back(static_cast<float>(static_cast<double>(x.read.count(block, v, 0, 0, 0, p)) / samples));
@@ -39,7 +40,7 @@ ImageResult new_image(const RoomResults& x, const ResultKey& key, std::size_t v)
 
 void add_band(const RoomResults& x, std::size_t v, std::size_t l, ImageResult* image) {
   const std::uint32_t block = find_detector(x.plan, "pixels")->first_block + kRadiance;
-  const double points = static_cast<double>(x.read.points());
+  const double points = static_cast<double>(x.read.points(v));
   image->bands.push_back(x.plan.request.lanes[l].band);
   image->band_source_W_m2.push_back(source_band_W_m2(x.scene.source, x.plan.request.lanes[l].band));
   for (std::uint64_t p = 0; p < image->coverage.size(); ++p) {
@@ -126,13 +127,45 @@ void caustics_results(const RoomResults& x) {
   }
 }
 
+/// The root mean square of the standard errors of pixels, over their mean radiance, of the pixels for which
+/// `counts(pixel, sum)` holds.
+template <class Counts>
+double rms_error(const TargetContext& x, Counts&& counts) {
+  const PictureSize& size = x.plan.request.picture;
+  const std::uint64_t pixels = static_cast<std::uint64_t>(size.width) * size.height;
+  double squares = 0.0, mean = 0.0, count = 0.0;
+  for (std::size_t l = 0; l < x.plan.request.lanes.size(); ++l) {
+    for (std::uint64_t p = 0; p < pixels; ++p) {
+      const double a = x.read.weight(x.detector.first_block + kRadiance, x.view, l, 0, p);
+      const double b = x.read.weight(x.detector.first_block + kRadiance, x.view, l, 1, p);
+      if (!counts(p, a + b)) continue;
+      mean += 0.5 * (a + b);
+      squares += 0.25 * (a - b) * (a - b);
+      count += 1.0;
+    }
+  }
+  return mean > 0.0 ? std::sqrt(squares / count) / (mean / count) : std::numeric_limits<double>::quiet_NaN();
+}
+
+/// Over all covered pixels.
+double pixels_error(const TargetContext& x) {
+  const std::uint32_t covered = x.detector.first_block + kCovered;
+  return rms_error(x, [&](std::uint64_t p, double) { return x.read.count(covered, x.view, 0, 0, 0, p) != 0; });
+}
+
+/// Over those that light reaches.
+double caustics_error(const TargetContext& x) {
+  return rms_error(x, [](std::uint64_t, double sum) { return sum != 0.0; });
+}
+
 // A picture has no totals.
-void no_targets(const PassPlan&, const PassDetector&, const SumReader&, const Geometry&, std::vector<Target>*) {}
+void no_targets(const TargetContext&, std::vector<Target>*) {}
 
 }  // namespace
 
 const DetectorRoom kRgbRoom{"rgb", nullptr, nullptr, nullptr, picture_results};
-const DetectorRoom kCausticsRoom{"caustics", caustics_settings, nullptr, no_targets, caustics_results};
+const DetectorRoom kPixelsRoom{"pixels", nullptr, nullptr, no_targets, nullptr, pixels_error};
+const DetectorRoom kCausticsRoom{"caustics", caustics_settings, nullptr, no_targets, caustics_results, caustics_error};
 const DetectorRoom kHyperspectralRoom{"hyperspectral", nullptr, nullptr, nullptr, picture_results};
 
 }  // namespace clray

@@ -31,7 +31,7 @@ VectorEstimate vector_of(const RoomResults& x, std::size_t v, const LaneRecord& 
   for (int axis = 0; axis < 3; ++axis) {
     const Estimate e =
         estimate_total(push(x.plan, x.detector, x.read, v, record, first, last, k + static_cast<std::uint64_t>(axis)),
-                       rays_of(x.read));
+                       rays_of(x.read, v));
     out.value[axis] = e.value;
     out.standard_error[axis] = e.standard_error;
     out.relative_variance_of_variance[axis] = e.relative_variance_of_variance;
@@ -52,7 +52,7 @@ PressureResult pressure_record(const RoomResults& x, std::size_t v, const LaneRe
     p.component_m2.push_back(vector_of(x, v, record, k, k + 1, 0));
     p.component_m3.push_back(vector_of(x, v, record, k, k + 1, 3));
   }
-  p.absorbed_m2 = estimate_total(book(x.plan, x.read, v, record, CLRAY_BOOK_ABSORBED), rays_of(x.read));
+  p.absorbed_m2 = estimate_total(book(x.plan, x.read, v, record, CLRAY_BOOK_ABSORBED), rays_of(x.read, v));
   return p;
 }
 
@@ -93,22 +93,19 @@ void pressure_results(const RoomResults& x) {
 }
 
 /// |F|, and the torque against |F| at the body's radius.
-void pressure_targets(const PassPlan& plan, const PassDetector& d, const SumReader& read, const Geometry& geometry,
-                      std::vector<Target>* targets) {
-  for (std::size_t v = 0; v < plan.layout.shape.views; ++v) {
-    for (const LaneRecord& record : lane_records(plan.request.lanes)) {
-      Target force, torque;
-      double square = 0.0;
-      for (std::uint64_t k = 0; k < kPushes; ++k) {
-        Target& target = k < 3 ? force : torque;
-        target.components.push_back(push(plan, d, read, v, record, 0, plan.traits.components, k));
-        const double mean = k < 3 ? estimate_mean(target.components.back()).value : 0.0;
-        square += mean * mean;
-      }
-      torque.scale = std::sqrt(square) * geometry.radius;
-      targets->push_back(std::move(force));
-      targets->push_back(std::move(torque));
+void pressure_targets(const TargetContext& x, std::vector<Target>* targets) {
+  for (const LaneRecord& record : lane_records(x.plan.request.lanes)) {
+    Target force, torque;
+    double square = 0.0;
+    for (std::uint64_t k = 0; k < kPushes; ++k) {
+      Target& target = k < 3 ? force : torque;
+      target.components.push_back(push(x.plan, x.detector, x.read, x.view, record, 0, x.plan.traits.components, k));
+      const double mean = k < 3 ? estimate_mean(target.components.back()).value : 0.0;
+      square += mean * mean;
     }
+    torque.scale = std::sqrt(square) * x.geometry.radius;
+    targets->push_back(std::move(force));
+    targets->push_back(std::move(torque));
   }
 }
 

@@ -27,6 +27,15 @@ struct RoomContext {
   const Geometry& geometry;
 };
 
+/// A view of a pass whose error is asked for.
+struct TargetContext {
+  const PassPlan& plan;
+  const PassDetector& detector;
+  const SumReader& read;
+  const Geometry& geometry;
+  std::size_t view;
+};
+
 /// One detector of a pass with all its sums.
 struct RoomResults {
   const Scene& scene;
@@ -60,9 +69,9 @@ struct DetectorRoom {
   const char* id;
   std::vector<double> (*settings)(const RoomContext&) = nullptr;               ///< default: the keys of its row
   std::optional<PathBins> (*path_bins)(const std::vector<double>&) = nullptr;  ///< of its settings; default: none
-  void (*targets)(const PassPlan&, const PassDetector&, const SumReader&, const Geometry&,
-                  std::vector<Target>*) = nullptr;  ///< default: every number with a unit
-  void (*results)(const RoomResults&) = nullptr;    ///< default: a table of every number with a unit
+  void (*targets)(const TargetContext&, std::vector<Target>*) = nullptr;  ///< of a view; default: numbers with a unit
+  void (*results)(const RoomResults&) = nullptr;                          ///< default: a table of numbers with a unit
+  double (*picture_error)(const TargetContext&) = nullptr;                ///< of a view's picture, over its mean
 };
 
 /// The room of a row of detector.def; one with every default where it has none.

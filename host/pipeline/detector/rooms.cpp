@@ -7,7 +7,7 @@ namespace clray {
 const DetectorRoom& room_of(const std::string& id) {
   static const DetectorRoom plain{""};
   for (const DetectorRoom* room : {&kDelayRoom, &kIntensityRoom, &kSpectrometerRoom, &kPressureRoom, &kBooksRoom,
-                                   &kRgbRoom, &kHyperspectralRoom, &kCausticsRoom}) {
+                                   &kRgbRoom, &kHyperspectralRoom, &kPixelsRoom, &kCausticsRoom}) {
     if (id == room->id) return *room;
   }
   return plain;

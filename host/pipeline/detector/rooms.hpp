@@ -7,6 +7,6 @@
 namespace clray {
 
 extern const DetectorRoom kDelayRoom, kIntensityRoom, kSpectrometerRoom, kPressureRoom, kBooksRoom, kRgbRoom,
-    kHyperspectralRoom, kCausticsRoom;
+    kHyperspectralRoom, kPixelsRoom, kCausticsRoom;
 
 }  // namespace clray

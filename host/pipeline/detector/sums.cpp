@@ -9,18 +9,15 @@
 namespace clray {
 namespace {
 
-/// Calls `function` with the block, view, lanes and connection of each row of a detector's sums that have a unit.
+/// Calls `function` with the block, lanes and connection of each row of a view of a detector's sums that have a unit.
 template <class Function>
 void each_row(const PassPlan& plan, const PassDetector& detector, Function&& function) {
-  const SumShape& shape = plan.layout.shape;
-  for (std::size_t v = 0; v < shape.views; ++v) {
-    for (const LaneRecord& record : lane_records(plan.request.lanes)) {
-      for (std::uint32_t b = detector.first_block; b < detector.last_block; ++b) {
-        const SumBlock& block = plan.layout.blocks[b];
-        if (block.unit.empty()) continue;
-        const std::size_t connections = block.rows == SumRows::connection ? shape.connections : 1;
-        for (std::size_t c = 0; c < connections; ++c) function(b, v, record, c);
-      }
+  for (const LaneRecord& record : lane_records(plan.request.lanes)) {
+    for (std::uint32_t b = detector.first_block; b < detector.last_block; ++b) {
+      const SumBlock& block = plan.layout.blocks[b];
+      if (block.unit.empty()) continue;
+      const std::size_t connections = block.rows == SumRows::connection ? plan.layout.shape.connections : 1;
+      for (std::size_t c = 0; c < connections; ++c) function(b, record, c);
     }
   }
 }
@@ -40,10 +37,8 @@ void add_table(const RoomResults& x, TableResult table, const LaneRecord& lanes)
     known->values[k] = sum_of_parts(known->values[k], table.values[k]);
 }
 
-}  // namespace
-
-void sums_results(const RoomResults& x) {
-  each_row(x.plan, x.detector, [&](std::uint32_t b, std::size_t v, const LaneRecord& record, std::size_t c) {
+void view_results(const RoomResults& x, std::size_t v) {
+  each_row(x.plan, x.detector, [&](std::uint32_t b, const LaneRecord& record, std::size_t c) {
     const SumBlock& block = x.plan.layout.blocks[b];
     TableResult table;
     table.key = block.rows == SumRows::connection ? x.key(v, record.first, c) : x.key(v, record.first);
@@ -51,7 +46,7 @@ void sums_results(const RoomResults& x) {
     table.unit = block.unit;
     bool lit = false;
     for (std::uint64_t k = 0; k < block.width; ++k) {
-      table.values.push_back(estimate_total(number_of(x.plan, x.read, b, v, record, c, k), rays_of(x.read)));
+      table.values.push_back(estimate_total(number_of(x.plan, x.read, b, v, record, c, k), rays_of(x.read, v)));
       lit = lit || table.values.back().value != 0.0 || table.values.back().standard_error != 0.0;
     }
     x.note(table.key, lit);
@@ -59,12 +54,17 @@ void sums_results(const RoomResults& x) {
   });
 }
 
-void sums_targets(const PassPlan& plan, const PassDetector& detector, const SumReader& read, const Geometry&,
-                  std::vector<Target>* targets) {
-  each_row(plan, detector, [&](std::uint32_t b, std::size_t v, const LaneRecord& record, std::size_t c) {
-    for (std::uint64_t k = 0; k < plan.layout.blocks[b].width; ++k) {
+}  // namespace
+
+void sums_results(const RoomResults& x) {
+  for (std::size_t v = 0; v < x.plan.layout.shape.views; ++v) view_results(x, v);
+}
+
+void sums_targets(const TargetContext& x, std::vector<Target>* targets) {
+  each_row(x.plan, x.detector, [&](std::uint32_t b, const LaneRecord& record, std::size_t c) {
+    for (std::uint64_t k = 0; k < x.plan.layout.blocks[b].width; ++k) {
       Target target;
-      target.components.push_back(number_of(plan, read, b, v, record, c, k));
+      target.components.push_back(number_of(x.plan, x.read, b, x.view, record, c, k));
       targets->push_back(std::move(target));
     }
   });

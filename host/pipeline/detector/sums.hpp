@@ -10,7 +10,6 @@ namespace clray {
 void sums_results(const RoomResults& x);
 
 /// The default of DetectorRoom::targets.
-void sums_targets(const PassPlan& plan, const PassDetector& detector, const SumReader& read, const Geometry& geometry,
-                  std::vector<Target>* targets);
+void sums_targets(const TargetContext& x, std::vector<Target>* targets);
 
 }  // namespace clray

@@ -190,12 +190,8 @@ Vec3 TomlTable::vector(const std::string& key, std::optional<Vec3> fallback) {
 Vec3 TomlTable::direction(const std::string& key, std::optional<Vec3> fallback) {
   if (node(key) == nullptr && fallback) return *fallback;
   const Vec3 v = vector(key);
-  // Scaled by the largest component first, so that squares of tiny and huge ones neither vanish nor overflow.
-  const double largest = std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
-  if (largest == 0.0) fail(key, "expected a direction, found the zero vector");
-  const Vec3 u(v.x / largest, v.y / largest, v.z / largest);
-  const double length = std::sqrt(u.x * u.x + u.y * u.y + u.z * u.z);
-  return {u.x / length, u.y / length, u.z / length};
+  if (v == Vec3(0.0)) fail(key, "expected a direction, found the zero vector");
+  return unit_vector(v);
 }
 
 std::optional<double> TomlTable::row_key(const TableKey& key) {

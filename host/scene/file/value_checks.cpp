@@ -37,6 +37,15 @@ std::string place_fault(const Vec3& v) {
   return most <= kLongest_m ? "" : fmt::format("expected at most {:g} m, found {:g}", kLongest_m, most);
 }
 
+Vec3 unit_vector(const Vec3& v) {
+  if (std::fabs(v.x * v.x + v.y * v.y + v.z * v.z - 1.0) <= 1e-15) return v;
+  // Scaled by the largest component first, so that squares of tiny and huge ones neither vanish nor overflow.
+  const double largest = std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
+  const Vec3 u(v.x / largest, v.y / largest, v.z / largest);
+  const double length = std::sqrt(u.x * u.x + u.y * u.y + u.z * u.z);
+  return {u.x / length, u.y / length, u.z / length};
+}
+
 std::string unit_fault(const Vec3& v) {
   const std::string fault = vector_fault(v);
   if (!fault.empty()) return fault;

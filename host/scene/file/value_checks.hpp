@@ -28,6 +28,10 @@ constexpr double kLargestAngle_deg = 1e6;
 /// Three coordinates of at most kLongest_m.
 std::string place_fault(const Vec3& v);
 
+/// The unit vector along `v`, which is not zero. One that is a unit vector to rounding keeps its bits, so that
+/// directions which a run states can be given to another.
+Vec3 unit_vector(const Vec3& v);
+
 /// A vector of length 1.
 std::string unit_fault(const Vec3& v);
 
