@@ -8,12 +8,11 @@
 using namespace clray_test;
 
 TEST_CASE("intervals hold the exact value 92 to 98 % of the time, every detector, Sobol and random") {
-  constexpr int kSeeds = 400;
   for (const CoverageScene& scene : coverage_scenes()) {
-    const std::vector<Coverage> found = cover(scene, kSeeds);
+    const std::vector<Coverage> found = cover(scene);
     for (std::size_t k = 0; k < found.size(); ++k) {
       INFO(scene.name, ", ", scene.claims[k].name, ": ", found[k].text());
-      CHECK(found[k].intervals == kSeeds);
+      CHECK(found[k].intervals >= 400);
       CHECK(found[k].fair());
     }
   }

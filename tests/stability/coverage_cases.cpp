@@ -16,7 +16,7 @@ constexpr int kSeeds = 400;
 
 Outcome detector(const CoverageScene& scene) {
   Outcome outcome{true, ""};
-  const std::vector<Coverage> found = cover(scene, kSeeds);
+  const std::vector<Coverage> found = cover(scene);
   for (std::size_t k = 0; k < found.size(); ++k) {
     outcome.pass = outcome.pass && found[k].fair();
     outcome.measured += fmt::format("{}{}: {}", k ? "; " : "", scene.claims[k].name, found[k].text());
@@ -53,7 +53,7 @@ Outcome pixels(bool sobol) {
 std::vector<Case> coverage_cases() {
   std::vector<Case> cases;
   for (const CoverageScene& scene : coverage_scenes())
-    cases.push_back({"coverage", scene.name + ", 400 seeds", "95 % intervals hold the exact value",
+    cases.push_back({"coverage", scene.name + ", 400 or 1200 seeds", "95 % intervals hold the exact value",
                      "92 to 98 %: probability 0.99 of a fair 95 %", false, [scene] { return detector(scene); }});
   for (std::size_t g = 0; g < kHitsGroups.size(); ++g)
     cases.push_back({"coverage", fmt::format("bins with {}, random", kHitsGroups[g]),

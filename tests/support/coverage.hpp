@@ -39,8 +39,10 @@ struct CoverageScene {
 /// Delay totals, means and widths, spectrometer, force, torque, absorbed light, pictures and cubes; Sobol and random.
 std::vector<CoverageScene> coverage_scenes();
 
-/// Coverage of each claim over seeds 1 … `seeds`.
-std::vector<Coverage> cover(const CoverageScene& scene, int seeds);
+/// Coverage of each claim over 400 seeds. Of some fifteen independent claims that are fair one misses by chance in one
+/// of seven sets of random numbers. So where a claim misses, the scene is measured again over 1200 other seeds: 92 %
+/// are then 4.8 standard errors off a fair 95 %.
+std::vector<Coverage> cover(const CoverageScene& scene);
 
 /// Bins by the hits they had: 10 … 29, 30 … 99, 100 … 999 and more.
 using ByHits = std::array<Coverage, 4>;
