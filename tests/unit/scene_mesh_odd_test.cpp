@@ -207,6 +207,26 @@ TEST_CASE("PLY: strips of triangles are triangles that look to one side") {
             .find("an integer from -1 to 5") != std::string::npos);
 }
 
+TEST_CASE("what is not used may be no number or too much; what counts may not") {
+  check_square("v 0 0 0 nan nan nan\nv 2 0 0 1 inf 0\nv 2 2 0\nv 0 2 0\nf 1 2 3 4\n", "a.obj",
+               {"a.obj:1: 'nan' as w or a colour of a vertex is not finite; it is not used (4 in all)"});
+  const std::string head =
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 1\nproperty list uchar int vertex_indices\n";
+  const std::string points = "end_header\n0 0 0\n2 0 0\n2 2 0\n0 2 0\n";
+  check_square(head + "property uchar red\n" + points + "4 0 1 2 3 9 1 1\n", "a.ply",
+               {"a.ply:15: '1' follows the properties that the header names; left out"});
+  const Folder folder;
+  CHECK(refusal_of(folder.write("a.ply", head + points + "3 0 1 2 3\n")).find("follows a complete face") !=
+        std::string::npos);
+  check_square("OFF\n4 1 0\n0 0 0\n2 0 0\n2 2 0\n0 2 0\n4 0\n1 2\n\n3\n", "a.off",
+               {"a.off:7: a face goes on over several lines"});
+  CHECK(refusal_of(folder.write("a.off", "OFF\n4 2 0\n0 0 0\n2 0 0\n2 2 0\n0 2 0\n4 0 1 2\n3 0 1 2\n"))
+            .find("a.off:7|the line ends where a vertex index was expected") == 0);
+  CHECK(refusal_of(folder.write("a.obj", std::string("\xfe\xff\0v", 4))) ==
+        "a.obj:1|text in UTF-16; save it as UTF-8, which was expected");
+}
+
 TEST_CASE("STL text keeps doubles, and equal corners become one vertex whatever the sign of their zeros") {
   const auto mesh = load_text(
       "solid\nfacet\nouter loop\nvertex 0.1 -0 0\nvertex 1.1 0 0\nvertex 1.1 1 0\nendloop\nendfacet\n"

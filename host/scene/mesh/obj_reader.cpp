@@ -79,7 +79,12 @@ class ObjReader {
     // Then w, or the r g b that scanners write, or both.
     for (int extra = 0; text_.more_on_line(); ++extra) {
       if (extra == 4) text_.fail("a vertex with more than seven values; x y z [w] [r g b] was expected");
-      text_.number("w or a colour of a vertex");
+      double unused = 0.0;
+      const std::string_view word = text_.word();
+      const std::string trouble = parse_number(word, unused);
+      if (trouble.find("no number") != trouble.npos)
+        text_.fail(trouble + "; w or a colour of a vertex (a finite number) was expected");
+      if (!trouble.empty()) colours_.add(text_.line(), word);
     }
     if (soup_.vertices.size() == kMaxVertices) text_.fail("more than 2^31 vertices; fewer were expected");
     soup_.vertices.push_back(v);
@@ -163,6 +168,8 @@ class ObjReader {
                      std::to_string(soup_.vertices.size()) + " was expected");
     }
     for (const Field field : {kTexture, kNormal}) warn_of_unused(field);
+    colours_.warn(path_, quote_word(colours_.first) + " as w or a colour of a vertex is not finite; it is not used",
+                  soup_.warnings);
     for (const auto& [key, tally] : left_out_)
       tally.warn(path_, "statement " + quote_word(key) + " is left out", soup_.warnings);
     if (soup_.first.empty()) text_.fail("no faces; at least one face (f) of three corners was expected");
@@ -197,12 +204,15 @@ class ObjReader {
   std::vector<Pending> pending_;
   std::array<Greatest, 3> greatest_{};
   std::array<Tally, 3> nowhere_;
+  Tally colours_;
   std::map<std::string, Tally> left_out_;  // by keyword
 };
 
 }  // namespace
 
 PolygonSoup read_obj(const std::string& path, const std::string& content) {
+  if (content.compare(0, 2, "\xfe\xff") == 0 || content.compare(0, 2, "\xff\xfe") == 0)
+    fail_input(path, 1, "text in UTF-16; save it as UTF-8, which was expected");
   const std::size_t zero = content.find('\0');
   if (zero != content.npos) {
     std::uint64_t line = 1;

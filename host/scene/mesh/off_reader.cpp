@@ -48,8 +48,19 @@ void read_vertices(TextCursor& text, std::uint64_t count, PolygonSoup& soup) {
   }
 }
 
+/// Whether the next line holds nothing but some of the `missing` indices of a face: a face may be broken over lines,
+/// but one that lacks an index must not take it from the next.
+bool next_line_continues(TextCursor text, std::int64_t missing) {
+  text.next_line();
+  if (!text.next_filled_line()) return false;
+  std::int64_t words = 0;
+  for (; text.more_on_line() && words <= missing; ++words) text.word();
+  return words <= missing;
+}
+
 void read_faces(TextCursor& text, std::uint64_t count, const std::string& path, PolygonSoup& soup) {
   const auto last = static_cast<std::int64_t>(soup.vertices.size()) - 1;
+  Tally broken_faces;
   soup.first.reserve(count);
   for (std::uint64_t f = 0; f < count; ++f) {
     if (!text.next_filled_line()) {
@@ -57,11 +68,21 @@ void read_faces(TextCursor& text, std::uint64_t count, const std::string& path, 
     }
     const std::size_t start = soup.corners.size();
     const std::int64_t corners = text.integer("the number of corners", 0, static_cast<std::int64_t>(kMaxCorners));
-    for (std::int64_t i = 0; i < corners; ++i)
+    const std::uint64_t line = text.line();
+    bool broken = false;
+    for (std::int64_t i = 0; i < corners; ++i) {
+      if (!text.more_on_line() && next_line_continues(text, corners - i)) {
+        text.next_line();
+        text.next_filled_line();
+        broken = true;
+      }
       soup.corners.push_back(static_cast<std::uint32_t>(text.integer("a vertex index", 0, last)));
-    soup.end_face(start, path, text.line());
+    }
+    if (broken) broken_faces.add(line);
+    soup.end_face(start, path, line);
     text.next_line();
   }
+  broken_faces.warn(path, "a face goes on over several lines", soup.warnings);
 }
 
 }  // namespace

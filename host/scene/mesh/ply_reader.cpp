@@ -157,10 +157,14 @@ class PlyBody {
     if (encoding_ == Encoding::text && !text_.next_filled_line())
       text_.fail("the file ends where " + item() + " was expected");
   }
-  void end_item() {
+  // A word too many matters where the last property is one that is used: its count may be wrong.
+  void end_item(bool last_used) {
     if (encoding_ != Encoding::text) return;
     if (text_.more_on_line()) {
-      text_.fail(quote_word(text_.word()) + " follows a complete " + *element_ + "; the end of the line was expected");
+      const std::string_view word = text_.word();
+      if (last_used)
+        text_.fail(quote_word(word) + " follows a complete " + *element_ + "; the end of the line was expected");
+      surplus_.add(text_.line(), word);
     }
     text_.next_line();
   }
@@ -202,6 +206,8 @@ class PlyBody {
 
   // The bytes or lines behind the last element.
   void check_tail(std::vector<std::string>& warnings) {
+    surplus_.warn(path_, quote_word(surplus_.first) + " follows the properties that the header names; left out",
+                  warnings);
     Tally tail;
     if (encoding_ != Encoding::text) {
       if (bytes_left() > 0) tail.add(0);
@@ -243,6 +249,7 @@ class PlyBody {
   const std::string& path_;
   const std::string* element_ = nullptr;
   std::uint64_t number_ = 0;
+  Tally surplus_;
 };
 
 // One element vertex and one element face (or tristrips) with what is read of them.
@@ -362,7 +369,8 @@ PolygonSoup read_ply(const std::string& path, const std::string& content) {
       body.begin_item(element.name, i + 1);
       read_item(body, element, vertices, path, soup);
       if (element.name == "face") soup.end_face(start, path, body.line());
-      body.end_item();
+      const PlyProperty* last = element.properties.empty() ? nullptr : &element.properties.back();
+      body.end_item(last == nullptr || last->corners || last->axis >= 0);
     }
   }
   body.check_tail(soup.warnings);
