@@ -7,6 +7,7 @@
 
 #include "clray/error.hpp"
 #include "ephemeris/range.hpp"
+#include "pass/instants.hpp"
 #include "scene/motion.hpp"
 #include "shared/elementary.h"
 
@@ -33,10 +34,12 @@ double range_or_0(const Observer& observer, const ephemeris::RangeModel* ranges,
 }  // namespace
 
 std::vector<Orientation> views_of_motion(const Scene& scene) {
+  if (scene.pass) return pass::views(scene);
   std::vector<Orientation> views = orientations(scene);
   std::optional<ephemeris::RangeModel> ranges;
   if (scene.station) ranges.emplace(*scene.station);
   for (Orientation& view : views) {
+    if (ranges) view.source_range_m = range_or_0(Observer{}, &*ranges, view.time_s);
     for (const Observer& observer : scene.observers)
       view.ranges_m.push_back(range_or_0(observer, ranges ? &*ranges : nullptr, view.time_s));
   }
@@ -51,6 +54,7 @@ std::vector<Orientation> views_of_grid(const Scene& scene, int azimuths, int ele
     const bool pole = e == 0 || e == elevations - 1;
     for (int a = 0; a < (pole ? 1 : azimuths); ++a) {
       Orientation view = start;
+      view.light = 1.0;
       view.source = direction_from_degrees(360.0 * a / azimuths, elevation);
       for (std::size_t o = 0; o < scene.observers.size(); ++o) {
         if (at_source(scene.observers[o], scene.source)) view.observers[o] = view.source;

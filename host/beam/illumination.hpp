@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The views of a scene: times, how the body stands, where light comes from and how strong it is, who looks from where
 // and how far away. A motion makes views, and so does a grid of light directions. What follows does not ask where a
-// view came from.
+// view came from. A pass computes its own (host/pass).
 #pragma once
 
 #include <vector>
@@ -10,7 +10,8 @@
 
 namespace clray {
 
-/// The instants of the scene's motion (one without motion). Ranges that are not known at a time are 0.
+/// The instants of the scene's motion (one without motion), or those of its pass that are traced. Ranges that are not
+/// known at a time are 0.
 std::vector<Orientation> views_of_motion(const Scene& scene);
 
 /// Directions of the light on a grid, body frame: elevations (from the xy plane) from -90 to 90 degrees inclusive,

@@ -16,6 +16,7 @@
 #include "clray/device.hpp"
 #include "clray/error.hpp"
 #include "clray/keys.hpp"
+#include "clray/pass.hpp"
 #include "clray/result.hpp"
 #include "clray/session.hpp"
 #include "environment.hpp"
@@ -172,7 +173,7 @@ int run(int argc, char** argv) {
   cli::apply(arguments, scene);
   check_scene(scene);
   if (arguments.check) {
-    print(describe_scene(scene));  // the warnings, too
+    print(describe_scene(scene) + describe_pass(scene));  // the warnings, too
     return 0;
   }
   warnings.show(scene.warnings);

@@ -10,6 +10,7 @@
 
 #include "clray/constants.hpp"
 #include "clray/error.hpp"
+#include "ephemeris/site.hpp"
 
 namespace clray::ephemeris {
 
@@ -37,6 +38,21 @@ void check_table(const std::vector<std::pair<double, double>>& table) {
   }
 }
 
+/// A prediction as a target. Throws Error(input) where its positions are not Earth-fixed.
+Target target_of(Trajectory prediction) {
+  if (prediction.frame != Frame::itrf) {
+    refuse(prediction.path,
+           "its positions are not Earth-fixed (reference frame 0 of record H2); [pass] takes such a file");
+  }
+  auto shared = std::make_shared<const Trajectory>(std::move(prediction));
+  return {shared->zero,
+          shared->last_s(),
+          [shared](double since_s) { return shared->at(since_s).value; },
+          shared->path,
+          shared->segments.front().positions.times().size(),
+          shared->prediction};
+}
+
 /// Seconds, with enough digits to tell any two times apart.
 std::string seconds_text(const Instant& time) {
   return fmt::format("{} s", static_cast<double>(time.s) + static_cast<double>(time.ps) * 1e-12);
@@ -53,7 +69,7 @@ RangeModel::RangeModel(const Station& station)
   if (station.start_mjd != 0.0)
     zero_ = epoch_of(static_cast<std::int64_t>(day), (station.start_mjd - day) * kSecondsPerDay);
   if (!station.cpf_file.empty()) {
-    prediction_ = std::make_unique<Prediction>(read_cpf(station.cpf_file));
+    target_ = target_of(read_cpf(station.cpf_file));
     const double radius = glm::length(position_m_);
     if (radius == 0.0) refuse("station.position_m", "is missing; expected Earth-fixed coordinates beside cpf");
     if (!(radius > 5e6 && radius < 8e6)) {
@@ -62,7 +78,7 @@ RangeModel::RangeModel(const Station& station)
                          "place on its surface",
                          radius));
     }
-    if (station.start_mjd == 0.0) zero_ = prediction_->first;
+    if (station.start_mjd == 0.0) zero_ = target_->zero;
   } else if (!station.ranges.empty()) {
     check_table(station.ranges);
     for (const auto& [time_s, range_m] : station.ranges) rows_.push_back({instant_of(time_s), range_m});
@@ -71,8 +87,19 @@ RangeModel::RangeModel(const Station& station)
   }
 }
 
-double RangeModel::since_first_s(const Instant& time) const {
-  return seconds_between(prediction_->first, epoch_of(zero_, time));
+RangeModel::RangeModel(Target target, const Vec3& position_m, const Epoch& start)
+    : target_(std::move(target)), position_m_(position_m), zero_(start), leaps_(true) {}
+
+double RangeModel::distance_m(double since_s) const {
+  double distance = glm::length(target_->place_m(since_s) - position_m_);
+  // Each round reduces the error of the light time by v/c < 3e-5, so four rounds leave none.
+  for (int round = 0; round < 4; ++round) {
+    const double flight_s = distance / constants::kLightSpeed_m_s;
+    const double next = glm::length(target_->place_m(since_s + flight_s) - position_m_);
+    if (next == distance) break;
+    distance = next;
+  }
+  return distance;
 }
 
 double RangeModel::table_range(const Instant& time) const {
@@ -101,7 +128,7 @@ double RangeModel::table_range(const Instant& time) const {
 }
 
 double RangeModel::range_m(const Instant& time) const {
-  if (prediction_) return distance_at(*prediction_, position_m_, since_first_s(time));
+  if (target_) return distance_m(since_first_s(time));
   return rows_.empty() ? range_m_ : table_range(time);
 }
 
@@ -110,18 +137,16 @@ void RangeModel::check_covers(double start_s, double stop_s) const {
   const auto between = [](const std::string& from, const std::string& to) {
     return from == to ? from : from + " to " + to;
   };
-  if (prediction_) {
-    const double last = prediction_->time_s.back();
+  if (target_) {
+    const double last = target_->last_s;
     const double end = std::clamp(since_first_s(stop), 0.0, last);
-    const double flight = glm::length(position_at(*prediction_, end) - position_m_) / constants::kLightSpeed_m_s;
+    const double flight = glm::length(target_->place_m(end) - position_m_) / constants::kLightSpeed_m_s;
     if (since_first_s(start) >= 0.0 && since_first_s(stop) + flight * (1.0 + 1e-4) <= last) return;
-    const Epoch back = epoch_of(prediction_->first.mjd, static_cast<double>(prediction_->first.ps) * 1e-12 + last);
-    refuse(prediction_->path,
+    refuse(target_->path,
            fmt::format("the prediction covers {}; the motion needs {}, and {:.3f} s more for the last pulse's flight "
                        "(its time 0 is {})",
-                       between(date_text(prediction_->first), date_text(back)),
-                       between(date_text(epoch_of(zero_, start)), date_text(epoch_of(zero_, stop))), flight,
-                       date_text(zero_)));
+                       between(date_text(target_->zero), date_text(later(target_->zero, last))),
+                       between(date_text(epoch(start)), date_text(epoch(stop))), flight, date_text(zero_)));
   }
   if (rows_.empty()) return;
   if (seconds_between(rows_.front().time, start) >= 0.0 && seconds_between(stop, rows_.back().time) >= 0.0) return;
@@ -131,13 +156,9 @@ void RangeModel::check_covers(double start_s, double stop_s) const {
 }
 
 double RangeModel::elevation_rad(const Instant& time) const {
-  // The ellipsoid's normal is the gradient of x²/a² + y²/a² + z²/b²: exact on it, and to 1e-6 rad 10 km above.
-  constexpr double kA_m = 6378137.0, kB_m = 6356752.314245;
-  const Vec3 up = glm::normalize(position_m_ / Vec3(kA_m * kA_m, kA_m * kA_m, kB_m * kB_m));
   const double since = since_first_s(time);
-  const double flight = distance_at(*prediction_, position_m_, since) / constants::kLightSpeed_m_s;
-  const Vec3 sight = position_at(*prediction_, since + flight) - position_m_;
-  return std::asin(std::clamp(glm::dot(glm::normalize(sight), up), -1.0, 1.0));
+  const double flight = distance_m(since) / constants::kLightSpeed_m_s;
+  return sight_of(position_m_, target_->place_m(since + flight) - position_m_).elevation_rad;
 }
 
 double observer_range_m(const Observer& observer, const RangeModel* ranges, const Instant& time) {

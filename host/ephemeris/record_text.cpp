@@ -60,7 +60,7 @@ bool RecordReader::next() {
     if (!fields_.empty()) break;
     if (blank == 0) blank = number_;
   }
-  if (blank != 0) {
+  if (blank != 0 && !blank_lines_) {
     number_ = blank;
     fail("an empty line");
   }

@@ -17,9 +17,10 @@ class RecordReader {
   /// Throws Error(input) where the file cannot be opened.
   explicit RecordReader(const std::string& path);
 
-  /// The next line; false at the end of the file, before which blank lines may stand. A blank line elsewhere is an
-  /// error, and so is a NUL or a line over 4096 bytes.
+  /// The next line that is not blank; false at the end of the file. A NUL or a line over 4096 bytes is an error, and so
+  /// is a blank line before the last record, unless they are allowed.
   bool next();
+  void allow_blank_lines() { blank_lines_ = true; }
 
   const std::string& line() const { return line_; }
   std::size_t line_number() const { return number_; }
@@ -51,6 +52,7 @@ class RecordReader {
   std::string path_, line_, type_;
   text::InputFile file_;
   std::size_t number_ = 0;
+  bool blank_lines_ = false;
   std::vector<std::string_view> fields_;
 };
 

@@ -145,6 +145,7 @@ void write_summary(Writer& writer, const std::vector<MoreFiles>& more) {
       throw Error(ErrorCode::usage, "summary_json is not JSON", "MoreFiles." + part.summary_key);
     summary[part.summary_key] = std::move(entry);
   }
+  if (!r.instants.empty()) summary["pass"] = pass_entry(r);
   summary["orientations"] = orientations_of(writer);
   const std::string name = writer.add("summary", "json");
   summary["warnings"] = warnings_of(writer);

@@ -20,6 +20,9 @@ inline Json vector(const Vec3& v, double scale = 1.0) {
   return Json::array({v.x * scale, v.y * scale, v.z * scale});
 }
 
+/// A pass in short: its span, and how many instants are traced and why others are not.
+Json pass_entry(const Result& result);
+
 inline Json value_and_error(const Estimate& estimate) {
   return {{"value", estimate.value},
           {"standard_error", estimate.standard_error},

@@ -109,6 +109,7 @@ std::vector<Total> totals(const Result& result);
 double first_reference_total(const Result& result, const Reference& reference);
 
 void write_error(Writer& writer);
+void write_pass(Writer& writer);
 void write_summary(Writer& writer, const std::vector<MoreFiles>& more);
 
 }  // namespace clray::io

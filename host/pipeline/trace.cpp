@@ -10,6 +10,7 @@
 
 #include "body/geometry.hpp"
 #include "clray/error.hpp"
+#include "clray/pass.hpp"
 #include "clray/result.hpp"
 #include "pipeline/outcome.hpp"
 #include "pipeline/pass_driver.hpp"
@@ -45,9 +46,10 @@ void add_unique(const std::vector<std::string>& from, std::vector<std::string>* 
 
 Result trace(const Scene& scene, Device& device, const TraceHooks& hooks) {
   check_scene(scene);
+  Result result;
+  result.instants = pass_instants(scene);
   const DeviceUse use(device);
   const double start = now();
-  Result result;
   result.device = device.info();
   result.seed = scene.trace.seed;
   result.replicates = scene.trace.replicates;
@@ -112,6 +114,7 @@ Result trace(const Scene& scene, Device& device, const TraceHooks& hooks) {
   std::vector<std::string> early = std::move(result.warnings);
   add_warnings(scene, ending, lit, &result);
   result.warnings.insert(result.warnings.end(), early.begin(), early.end());
+  add_unique(pass_warnings(scene), &result.warnings);
   return result;
 }
 

@@ -143,6 +143,10 @@ std::string describe_scene(const Scene& scene) {
   lines.add({"source", key_text(scene.source)});
   for (const Observer& o : scene.observers) lines.add({"observer", key_text(o)});
   if (scene.motion) lines.add({"motion", motion_text(*scene.motion)});
+  if (scene.pass) {
+    lines.add({"pass", key_text(*scene.pass)});
+    lines.add({"attitude", key_text(scene.pass->attitude)});
+  }
   if (scene.station) {
     lines.add({"station", key_text(*scene.station)});
     const std::string ranges = ranging_text(scene);

@@ -78,6 +78,13 @@ void check_result(const Result& result, const Scene& scene) {
   each("pressure", result.pressure,
        [&](const std::string& where, const PressureResult& p) { check_pressure(where, p, scene); });
   each("image", result.image, check_image);
+  for (std::size_t i = 0; i < result.instants.size(); ++i) {
+    const PassInstant& instant = result.instants[i];
+    if (!instant.traced()) continue;
+    const std::string where = fmt::format("instants[{}]", i);
+    if (instant.orientation >= result.orientations.size()) fail(where + ".orientation", "there is no such orientation");
+    check_size(where + ".view.observers", instant.view.observers.size(), scene.observers.size(), false);
+  }
   for (std::size_t i = 0; i < result.orientations.size(); ++i) {
     const Orientation& o = result.orientations[i];
     const std::string where = fmt::format("orientations[{}]", i);

@@ -127,6 +127,7 @@ void replace_observers(const SceneOptions& options, Scene* scene) {
                               lost);
   }
   one.monostatic = !options.observer;
+  one.toward = Toward::fixed;
   if (options.observer) one.direction = option_direction(*options.observer, "--observer");
   scene->observers = {one};
 }
@@ -138,7 +139,10 @@ void apply_options(const SceneOptions& options, Scene* scene) {
     if (!scene->variants.empty()) scene->warnings.push_back("--material overrides the variants of the scene");
     scene->variants.clear();
   }
-  if (options.source) scene->source.direction = option_direction(*options.source, "--source");
+  if (options.source) {
+    scene->source.direction = option_direction(*options.source, "--source");
+    scene->source.toward = Toward::fixed;
+  }
   if (options.observer || options.observer_at_source) replace_observers(options, scene);
   if (scene->observers.empty()) scene->observers = {Observer{}};
   for (Observer& o : scene->observers) {

@@ -327,6 +327,7 @@ void check_scene(const Scene& scene) {
   if (!dark.empty()) fail("source.bands", dark);
   if (scene.motion) check_motion(*scene.motion);
   if (scene.station) check_keys("station", *scene.station);
+  check_pass(scene);
   check_ranging(scene);
   check_trace(scene.trace);
 }

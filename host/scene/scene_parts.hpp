@@ -15,6 +15,9 @@ Scene read_scene_file(const std::string& path, const SceneOptions& options);
 
 void read_source(TomlTable& root, Scene* scene);
 void read_observers(TomlTable& root, Scene* scene);
+void read_pass(TomlTable& root, Scene* scene);
+/// Tables of directions and the source's default, once the pass is known.
+void read_pass_directions(TomlTable& root, Scene* scene);
 void read_motion(TomlTable& root, Scene* scene);
 void read_station(TomlTable& root, Scene* scene);
 void read_detectors(TomlTable& root, Scene* scene);
@@ -31,6 +34,9 @@ std::string detector_fault(const DetectorSpec& detector);
 
 /// What is wrong with a source for the scene's detectors, or "": bands in which it has no light.
 std::string source_fault(const Scene& scene);
+
+/// Throws Error(input) where a pass does not fit its scene, or a scene without one moves as only a pass can.
+void check_pass(const Scene& scene);
 
 /// Throws Error(input) where the station's range is not known throughout the motion (at time 0 without one), where an
 /// observer at the source has another range than the station there, or where the shots of a session are too many.

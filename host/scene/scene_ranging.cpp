@@ -52,6 +52,7 @@ std::string session_gap(const Scene& scene) {
   std::string near;
   for (const Observer& o : scene.observers) {
     if (at_source(o, scene.source)) return "";
+    if (o.toward != Toward::fixed || scene.source.toward != Toward::fixed) continue;
     const Vec3 d = o.direction - scene.source.direction;
     const double apart = std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
     if (apart < 1e-6) {
@@ -85,7 +86,7 @@ std::string below_horizon(const Scene& scene, const RangeModel& ranges) {
 }  // namespace
 
 void check_ranging(const Scene& scene) {
-  if (!scene.station) return;
+  if (!scene.station || scene.pass) return;  // a pass has the range of its orbit (host/pass)
   const RangeModel ranges(*scene.station);
   const auto [start, stop] = span_of(scene);
   ranges.check_covers(start, stop);
@@ -100,6 +101,11 @@ void check_ranging(const Scene& scene) {
 std::vector<std::string> ranging_warnings(const Scene& scene) {
   std::vector<std::string> warnings;
   if (!scene.station) return warnings;
+  if (scene.pass) {
+    const std::string gap = session_gap(scene);
+    if (!gap.empty()) warnings.push_back("a station and a pass, but no laser-ranging session: " + gap);
+    return warnings;
+  }
   const RangeModel ranges(*scene.station);
   if (scene.motion) {
     const std::string gap = session_gap(scene);
@@ -109,7 +115,7 @@ std::vector<std::string> ranging_warnings(const Scene& scene) {
       warnings.push_back(fmt::format(
           "station.start_mjd is not given: the motion's time 0 is taken as 2000-01-01 0h UTC, and the session dated {} "
           "(40587 is time 0 of Unix seconds, 44244 of GPS seconds, -2400000.5 of Julian seconds)",
-          ephemeris::date_text(ephemeris::epoch_of(ranges.zero(), ephemeris::instant_of(span_of(scene).first)))));
+          ephemeris::date_text(ranges.epoch(ephemeris::instant_of(span_of(scene).first)))));
     }
   }
   if (ranges.prediction()) {
@@ -120,6 +126,7 @@ std::vector<std::string> ranging_warnings(const Scene& scene) {
 }
 
 std::string ranging_text(const Scene& scene) {
+  if (scene.pass) return "";
   const RangeModel ranges(*scene.station);
   if (ranges.fixed()) return "";
   const auto [start, stop] = span_of(scene);
@@ -131,7 +138,8 @@ std::string ranging_text(const Scene& scene) {
   return text + fmt::format("; elevation {:.1f} and {:.1f} degrees; target {} by {}, {} positions from {} over {} s",
                             ranges.elevation_rad(ephemeris::instant_of(start)) * degrees,
                             ranges.elevation_rad(ephemeris::instant_of(stop)) * degrees, p->target, p->source,
-                            p->time_s.size(), ephemeris::date_text(p->first), p->time_s.back());
+                            ranges.target()->rows, ephemeris::date_text(ranges.target()->zero),
+                            ranges.target()->last_s);
 }
 
 }  // namespace clray

@@ -8,6 +8,7 @@
 #include "clray/constants.hpp"
 #include "clray/error.hpp"
 #include "ephemeris/range.hpp"
+#include "pass/instants.hpp"
 #include "slr/link.hpp"
 #include "slr/pulse.hpp"
 #include "slr/session.hpp"
@@ -17,16 +18,19 @@ namespace clray::slr {
 namespace {
 
 /// The ranges of a record, at the time of its orientation: from the station to the body, and from there to the
-/// observer, who has a range of his own unless he is at the station.
+/// observer, who has a range of his own unless he is at the station. Those of a pass are its views' own.
 Ranges ranges_of(const Result& result, const Scene& scene, const RangeModel& model, const ResultKey& key) {
-  const double time_s =
-      key.orientation < result.orientations.size() ? result.orientations[key.orientation].time_s : 0.0;
-  const Instant time = instant_of(time_s);
-  Ranges ranges{model.range_m(time), 0.0};
+  const Orientation* view =
+      key.orientation < result.orientations.size() ? &result.orientations[key.orientation] : nullptr;
+  const Instant time = instant_of(view ? view->time_s : 0.0);
+  const bool own = scene.pass && view && view->source_range_m > 0.0;
+  Ranges ranges{own ? view->source_range_m : model.range_m(time), 0.0};
   ranges.back_m = ranges.out_m;
-  for (const Observer& o : scene.observers) {
+  for (std::size_t i = 0; i < scene.observers.size(); ++i) {
+    const Observer& o = scene.observers[i];
     if ((key.observer.empty() || o.name == key.observer) && !at_source(o, scene.source)) {
-      ranges.back_m = observer_range_m(o, &model, time);
+      ranges.back_m = own && i < view->ranges_m.size() && view->ranges_m[i] > 0.0 ? view->ranges_m[i]
+                                                                                  : observer_range_m(o, &model, time);
     }
   }
   return ranges;
@@ -73,7 +77,7 @@ void expect_photons(const Scene& scene, Result* result) {
   check_scene(scene);
   check_result(*result, scene);
   if (!scene.station || scene.source.kind != Source::Kind::laser) return;
-  const slr::RangeModel model(*scene.station);
+  const slr::RangeModel model = pass::range_model(scene);
   for (DelayResult& delay : result->delay) {
     const slr::Ranges ranges = slr::ranges_of(*result, scene, model, delay.key);
     const slr::LinkBudget link = slr::link_budget(*scene.station, scene.source.wavelength_nm, ranges);
@@ -86,7 +90,7 @@ std::string link_budget_text(const Scene& scene, const Result& result) {
   check_result(result, scene);
   if (!scene.station || scene.source.kind != Source::Kind::laser || result.delay.empty()) return {};
   const DelayResult& delay = result.delay.front();
-  const slr::RangeModel model(*scene.station);
+  const slr::RangeModel model = pass::range_model(scene);
   std::string text;
   if (result.delay.size() > 1) {
     text = "Link budget of " + delay.key.detector;

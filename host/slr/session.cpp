@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shots over a pass; see session.hpp. Each block of shots has one orientation: that at the start of its motion step.
+// Shots over a motion or pass; see session.hpp. Each block of shots has one orientation: that at the start of its step.
 #include "slr/session.hpp"
 
 #include <fmt/format.h>
@@ -11,6 +11,7 @@
 #include "clray/constants.hpp"
 #include "clray/error.hpp"
 #include "device/shots.hpp"
+#include "pass/instants.hpp"
 #include "scene/motion.hpp"
 #include "shared/photon.h"
 #include "slr/link.hpp"
@@ -46,10 +47,33 @@ const DelayResult* first_of_group(const Result& result, const Scene& scene, cons
 
 const Station& station_of(const Scene& scene) {
   if (!scene.station) refuse("a session needs a [station]", "station");
-  if (!scene.motion) refuse("a session needs a [motion]", "motion");
+  if (!scene.motion && !scene.pass) refuse("a session needs a [motion] or a [pass]", "motion");
   if (scene.source.kind != Source::Kind::laser) refuse("a session needs kind = \"laser\"", "source.kind");
   check_station(*scene.station, scene.source.wavelength_nm);
   return *scene.station;
+}
+
+/// From when to when each orientation holds, in the time of motion or pass.
+struct Hold {
+  double from_s = 0.0, until_s = 0.0;
+};
+
+std::vector<Hold> holds_of(const Result& result, const Scene& scene) {
+  std::vector<Hold> holds;
+  if (scene.pass) {
+    for (const PassInstant& instant : result.instants) {
+      if (instant.traced()) holds.push_back({instant.time_s, instant.until_s});
+    }
+    return holds;
+  }
+  const std::size_t count = orientation_count(*scene.motion);
+  const double stop_s = motion_span(*scene.motion).second;
+  for (std::size_t i = 0; i < std::min(count, result.orientations.size()); ++i) {
+    const double next =
+        i + 1 < count && i + 1 < result.orientations.size() ? result.orientations[i + 1].time_s : stop_s;
+    holds.push_back({result.orientations[i].time_s, next});
+  }
+  return holds;
 }
 
 std::uint64_t count_shots(double duration_s, double rate_Hz) {
@@ -79,24 +103,25 @@ struct Session::Block {
 };
 
 Session::Session(const Result& result, const Scene& scene, const SessionOptions& options)
-    : station_(station_of(scene)), options_(options), ranges_(station_) {
+    : station_(station_of(scene)), options_(options), ranges_(pass::range_model(scene)) {
   const DelayResult* first = first_of_group(result, scene, options);
   // The orientations of a grid of Sun directions come after those of the motion; they have no delay results.
-  delays_.assign(orientation_count(*scene.motion), nullptr);
+  const std::vector<Hold> holds = holds_of(result, scene);
+  if (holds.empty()) refuse("there is no orientation with a delay result", scene.pass ? "pass" : "motion");
+  delays_.assign(holds.size(), nullptr);
   for (const DelayResult& d : result.delay) {
     if (same_group(d.key, first->key) && d.key.orientation < delays_.size()) delays_[d.key.orientation] = &d;
   }
-  std::vector<Instant> times;
   for (std::size_t i = 0; i < delays_.size(); ++i) {
-    if (!delays_[i] || i >= result.orientations.size())
-      refuse(fmt::format("orientation {} has no delay result", i), "motion");
-    times.push_back(instant_of(result.orientations[i].time_s));
+    if (!delays_[i]) refuse(fmt::format("orientation {} has no delay result", i), scene.pass ? "pass" : "motion");
   }
-  start_ = times.front();
-  const double stop_s = motion_span(*scene.motion).second;
-  shots_ = count_shots(seconds_between(start_, instant_of(stop_s)), station_.rate_Hz);
-  for (const Instant& time : times) first_shots_.push_back(first_shot_at(seconds_between(start_, time)));
-  first_shots_.push_back(shots_);
+  start_ = instant_of(holds.front().from_s);
+  shots_ = count_shots(seconds_between(start_, instant_of(holds.back().until_s)), station_.rate_Hz);
+  for (const Hold& hold : holds) {
+    first_shots_.push_back(first_shot_at(seconds_between(start_, instant_of(hold.from_s))));
+    end_shots_.push_back(first_shot_at(seconds_between(start_, instant_of(hold.until_s))));
+  }
+  if (shots_ > 0 && end_shots_.back() + 1 >= shots_) end_shots_.back() = shots_;  // a lone shot, or one on the end
   settings_.noise_per_ns = station_.noise_per_ns + station_.dark_per_ns;
   settings_.jitter_ns = station_.jitter_fwhm_s / kFwhmPerSigma * 1e9;
   settings_.seed = result.seed;
@@ -112,7 +137,7 @@ Session::Session(const Result& result, const Scene& scene, const SessionOptions&
   start_range_m_ = ranges_.range_m(start_);
   start_brightness_ =
       4.0 * constants::kPi * link_budget(station_, scene.source.wavelength_nm, start_range_m_).photons_per_m2;
-  ranges_.range_m(time(shots_ - 1));
+  ranges_.range_m(time(end_shots_.back() - 1));
 }
 
 Instant Session::time(std::uint64_t shot) const {
@@ -157,12 +182,13 @@ std::pair<double, double> Session::signal_window_ns() const {
 }
 
 double Session::mean_cross_section_m2() const {
-  double sum = 0.0;
+  double sum = 0.0, all = 0.0;
   for (std::size_t i = 0; i < delays_.size(); ++i) {
-    const auto shots = static_cast<double>(first_shots_[i + 1] - first_shots_[i]);
+    const auto shots = static_cast<double>(end_shots_[i] - first_shots_[i]);
     sum += shots * 4.0 * constants::kPi * delays_[i]->intensity_m2_per_sr.value;
+    all += shots;
   }
-  return sum / static_cast<double>(shots_);
+  return sum / all;
 }
 
 void Session::set_ranges(std::uint64_t first, std::uint32_t count, Block* block) const {
@@ -214,8 +240,9 @@ SessionSummary Session::run(const std::function<void(const Shot&)>& on_photon) {
   SessionSummary summary;
   Block block;
   std::uint64_t at = in_order_ ? 0 : begin;
-  for (std::size_t orientation = 0; at < end; ++orientation) {
-    const std::uint64_t next = std::min(first_shots_[orientation + 1], end);
+  for (std::size_t orientation = 0; at < end && orientation < delays_.size(); ++orientation) {
+    const std::uint64_t next = std::min(end_shots_[orientation], end);
+    at = std::max(at, first_shots_[orientation]);
     if (next <= at) continue;
     const Gate gate = gate_of(*delays_[orientation]);
     for (; at < next;) {

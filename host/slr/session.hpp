@@ -27,7 +27,7 @@ struct Shot {
   std::uint32_t kind = 0;  ///< CLRAY_PHOTON_*
 };
 
-/// Shots of a scene's station over its motion.
+/// Shots of a scene's station over its motion or pass.
 class Session {
  public:
   /// Checks everything that can be checked before the first shot. Throws Error(input).
@@ -70,7 +70,8 @@ class Session {
   bool in_order_ = false;                   ///< the dead time may reach into the next shot's gate
   double recovers_s_ = -1e300;              ///< when the detector sees again, from the start
   std::vector<const DelayResult*> delays_;  ///< one per orientation
-  std::vector<std::uint64_t> first_shots_;  ///< of each orientation, and all shots at the end
+  std::vector<std::uint64_t> first_shots_;  ///< of each orientation
+  std::vector<std::uint64_t> end_shots_;  ///< behind the last of each; between two orientations of a pass may be a gap
 };
 
 }  // namespace clray::slr

@@ -35,8 +35,8 @@ CrdHeader crd_header(const Session& session, const Scene& scene, std::uint64_t f
   const Station& s = *scene.station;
   CrdHeader h;
   h.produced = production_epoch();
-  h.start = epoch_of(session.ranges().zero(), session.time(first));
-  h.stop = epoch_of(session.ranges().zero(), session.time(last));
+  h.start = session.ranges().epoch(session.time(first));
+  h.stop = session.ranges().epoch(session.time(last));
   h.station = word(s.name);
   h.pad = fmt::format("{}", s.pad);
   h.system = fmt::format("{}", s.system);
@@ -62,7 +62,8 @@ CrdHeader crd_header(const Session& session, const Scene& scene, std::uint64_t f
     h.prediction_year = fmt::format("{:02}", p->year % 100);
     h.prediction_date = fmt::format("{:02}{:02}{:02}", p->month, p->day, p->hour);
     h.prediction_source = p->source;
-    h.prediction_sequence = fmt::format("{:03}{:02}", p->sequence, p->sub_daily);
+    h.prediction_sequence =
+        p->version == 1 ? fmt::format("{:04}", p->sequence) : fmt::format("{:03}{:02}", p->sequence, p->sub_daily);
   }
   h.wavelength_nm = scene.source.wavelength_nm;
   h.rate_Hz = s.rate_Hz;
@@ -122,8 +123,7 @@ static SessionSummary write_files(Session& session, const Result& result, const 
   csv_head(&csv, result, scene, session);
   const CrdHeader header = crd_header(session, scene, first, last);
   const auto supplement = [&](std::uint64_t shot) {
-    return CrdSupplement{epoch_of(session.ranges().zero(), session.time(shot)).ps,
-                         range_rate(session, session.since_s(shot))};
+    return CrdSupplement{session.ranges().epoch(session.time(shot)).ps, range_rate(session, session.since_s(shot))};
   };
   CrdWriter crd(path + ".crd", header, supplement(first));
   ScatterPlot picture =
@@ -141,8 +141,7 @@ static SessionSummary write_files(Session& session, const Result& result, const 
       crd.supplement(supplement(shot.number));
       next_supplement_s = since_s + 60.0;
     }
-    crd.range({epoch_of(session.ranges().zero(), shot.time).ps, whole,
-               station.flag_signal ? static_cast<int>(shot.kind) : 0});
+    crd.range({session.ranges().epoch(shot.time).ps, whole, station.flag_signal ? static_cast<int>(shot.kind) : 0});
     picture.add(since_s, shot.delay_ns, signal);
   });
   csv.close();
@@ -265,7 +264,7 @@ bool has_session(const Scene& scene) {
   const bool seen =
       scene.observers.empty() || std::any_of(scene.observers.begin(), scene.observers.end(),
                                              [&](const Observer& o) { return at_source(o, scene.source); });
-  return scene.station && scene.motion && scene.source.kind == Source::Kind::laser && seen;
+  return scene.station && (scene.motion || scene.pass) && scene.source.kind == Source::Kind::laser && seen;
 }
 
 SessionSummary write_session(const Result& result, const Scene& scene, const std::string& folder,

@@ -24,6 +24,13 @@ namespace clray {
 using Vec3 = glm::dvec3;
 using Quaternion = glm::dquat;
 
+/// An epoch of UTC: a Modified Julian Date and picoseconds of that day, which has 86401 s where it ends with a leap
+/// second.
+struct Epoch {
+  std::int64_t mjd = 0;
+  std::int64_t ps = 0;
+};
+
 /// A quantity against wavelength, linear between its points. Beyond them a surface's quantity is constant; a source
 /// sends nothing there, and a filter passes nothing.
 /// Wavelengths in nm, strictly increasing, at least one point.
@@ -109,16 +116,44 @@ struct Band {
   std::shared_ptr<const Spectrum> response = nullptr;
 };
 
+/// Frames of orbits and directions. Geocentric: gcrf (axes of the ICRF), eme2000 (mean equator and equinox of J2000),
+/// tod (true equator and equinox of date), teme (true equator, mean equinox), itrf (fixed to the Earth).
+enum class Frame { gcrf, eme2000, tod, teme, itrf };
+
+/// What gives a direction from the body at the instants of a pass. Without a pass it is always `fixed`.
+enum class Toward {
+  fixed,    ///< a vector; in a pass of the frame gcrf
+  sun,      ///< the Sun, computed
+  station,  ///< the place of the [station]
+  site,     ///< a place of its own (observers)
+  table     ///< rows by time
+};
+
+/// Directions from a table; linear between its rows.
+struct Directions {
+  struct Row {
+    double time_s = 0.0;  ///< from the pass's start
+    Vec3 direction{0.0, 0.0, 1.0};
+    double range_m = 0.0;  ///< 0: not known
+  };
+  std::string file;           ///< of `rows`, as a scene file names it; empty if they were filled by hand
+  bool in_body = false;       ///< in the body frame, else in `frame`
+  Frame frame = Frame::gcrf;  ///< gcrf or itrf
+  std::vector<Row> rows;      ///< times increasing
+};
+
 /// The light: parallel, of unit irradiance unless a detector states otherwise.
 struct Source {
   enum class Kind { laser, sun };
   Kind kind = Kind::laser;
-  Vec3 direction{0.0, 0.0, 1.0};     ///< unit vector toward the source
+  Vec3 direction{0.0, 0.0, 1.0};     ///< unit vector toward the source, if that is fixed
   double wavelength_nm = 532.0;      ///< of a laser
   std::vector<Band> bands;           ///< empty: the laser line; a sun's 400-700 nm, for pressure all its light
   std::optional<Spectrum> spectrum;  ///< W/m²/nm; a sun without one is Planck at 5772 K
   double blackbody_K = 0.0;          ///< > 0: Planck at this temperature, scaled to irradiance_W_m2
   double irradiance_W_m2 = constants::kSolarConstant_W_m2;  ///< of a sun or blackbody, all wavelengths
+  Toward toward = Toward::fixed;
+  Directions directions{};  ///< of Toward::table
 };
 
 /// Who looks. `monostatic` puts the observer exactly at the source, whatever the direction says.
@@ -128,12 +163,18 @@ struct Observer {
   bool monostatic = true;
   double acceptance_rad = 0.0;  ///< half angle of the cone that collects mirror reflections; 0: none
   double range_m = 0.0;         ///< distance, for received power and magnitude; 0: that of the station, if any
+  Toward toward = Toward::fixed;
+  Vec3 site_m{0.0};         ///< of Toward::site: its place, Earth-fixed
+  Directions directions{};  ///< of Toward::table
 };
 
-/// Whether an observer is at the source: the scene says so, or the two directions are equal bit for
-/// bit.
+/// Whether an observer is at the source: the scene says so, or the two are the same place, or the two fixed directions
+/// are equal bit for bit.
 inline bool at_source(const Observer& observer, const Source& source) {
-  return observer.monostatic || observer.direction == source.direction;
+  if (observer.monostatic) return true;
+  if (observer.toward != source.toward) return false;
+  if (source.toward == Toward::fixed) return observer.direction == source.direction;
+  return source.toward == Toward::station || source.toward == Toward::sun;
 }
 
 /// Body-to-space attitude at a time.
@@ -153,12 +194,44 @@ struct Motion {
   std::vector<Attitude> attitudes;
 };
 
+/// How the body stands during a pass: its axes lie along those of the law, turned by the offset.
+struct PassAttitude {
+  enum class Law { inertial, nadir, nadir_yaw_steering, sun_pointing, spin };
+  Law law = Law::inertial;
+  std::string file;                  ///< a CCSDS AEM; replaces the law
+  std::string attitudes_file;        ///< of `attitudes`; empty if they were filled by hand
+  std::vector<Attitude> attitudes;   ///< a table, body to gcrf, times from the pass's start; replaces the law
+  Vec3 spin_axis{0.0, 0.0, 1.0};     ///< right-handed, the same in the body and in the spin's frame
+  double spin_period_s = 0.0;        ///< of Law::spin
+  double spin_phase_rad = 0.0;       ///< at the pass's start
+  bool spin_in_orbit_frame = false;  ///< else in gcrf
+  Vec3 offset_axis{0.0, 0.0, 1.0};   ///< the body is turned about it, from the law's axes
+  double offset_rad = 0.0;
+};
+
+/// A pass: a body on its orbit, at its instants. Light and observers then move by themselves (docs/physics.md, section
+/// 10). Instead of a motion.
+struct Pass {
+  Epoch start;                          ///< MJD 0: not given
+  double stop_s = 0.0;                  ///< from the start, in SI seconds
+  double step_s = 0.0, step_rad = 0.0;  ///< one of them, or
+  std::string times_file;               ///< of `times_s`; empty if they were filled by hand
+  std::vector<double> times_s;          ///< the instants themselves, from the start, increasing
+  std::string ephemeris;                ///< file: ILRS CPF, CCSDS OEM, or a table of states
+  Frame frame = Frame::gcrf;            ///< of a table of states
+  std::string eop;                      ///< file of UT1 - UTC and polar motion; empty: both zero
+  double min_elevation_rad = 0.0;       ///< of the body over the horizon of a site or station
+  bool aberration = false;              ///< directions as the moving body meets them
+  PassAttitude attitude;
+  std::map<std::string, std::string> places;  ///< where keys stand in the scene file, for messages
+};
+
 /// A laser-ranging station and its link (docs/physics.md, section 5); defaults are those printed by a run.
 struct Station {
   std::string name = "clray";
   double range_m = 1.0e6;                         ///< fixed range, when neither table nor prediction is given
   std::vector<std::pair<double, double>> ranges;  ///< (time_s, range_m), increasing time
-  std::string cpf_file;                           ///< an ILRS CPF v2 prediction; needs position_m
+  std::string cpf_file;                           ///< an ILRS prediction (CPF); needs position_m
   Vec3 position_m{0.0};                           ///< Earth-fixed
   double start_mjd = 0.0;                         ///< epoch of session time 0 (UTC); 0: the CPF's first record
   double pulse_energy_J = 0.08;
@@ -202,6 +275,7 @@ struct Scene {
   std::vector<DetectorSpec> detectors;  ///< at least one after load_scene()
   TraceOptions trace;
   std::vector<std::string> warnings;
+  std::optional<Pass> pass;  ///< instead of a motion
 };
 
 /// What the command line may say about a scene; it overrides the file.

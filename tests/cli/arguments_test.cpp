@@ -46,9 +46,9 @@ TEST_CASE("lists of the tables") {
   CHECK(contains(devices.out, "index"));
   const auto wrong = clray(scratch, {"--list", "colours"});
   CHECK(wrong.status == 2);
-  CHECK(
-      contains(wrong.err,
-               "expected one of devices, brdf, shape, detector, walk, keys, source, observer, motion, station, trace"));
+  CHECK(contains(wrong.err,
+                 "expected one of devices, brdf, shape, detector, walk, keys, source, observer, motion, pass, "
+                 "pass.attitude, station, trace"));
 }
 
 TEST_CASE("no OpenCL platform: status 4, and the packages to install are named") {

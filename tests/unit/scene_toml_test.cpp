@@ -84,7 +84,7 @@ TEST_CASE("toml: words out of a list") {
   CHECK(f.complaint(kBall + "[trace]\nsampler = \"halton\"\n") ==
         "s.toml:3:11: trace.sampler: expected one of random, sobol, found \"halton\"");
   CHECK(f.complaint(kBall + "[observer]\ndirection = \"sun\"\n") ==
-        "s.toml:3:13: observer.direction: expected one of source, found \"sun\"");
+        "s.toml:3:13: observer.direction: expected one of source, station, found \"sun\"");
   CHECK(f.complaint("length_unit = \"km\"\n" + kBall) ==
         "s.toml:1:15: length_unit: expected one of m, cm, mm, in, ft, found \"km\"");
 }

@@ -39,10 +39,10 @@ struct Folder {
 };
 
 /// A body with two facets 6 m apart that turns: `orientations` steps over `seconds`.
-struct Pass {
+struct Spin {
   Scene scene;
   Result result;
-  Pass(double seconds, int orientations) {
+  Spin(double seconds, int orientations) {
     scene.name = "two facets";
     scene.materials.emplace_back();
     scene.components.emplace_back();
@@ -96,7 +96,7 @@ long peak_memory_KiB() {
 }  // namespace
 
 TEST_CASE("a session: counts as expected, each photon where its orientation has light") {
-  Pass pass(20.0, 10);
+  Spin pass(20.0, 10);
   Session session(pass.result, pass.scene, {});
   CHECK(session.shots() == 40000);
   const double photons = 4.0 * constants::kPi * 0.03 * link_budget(*pass.scene.station, 532.0, 1e6).photons_per_m2;
@@ -120,7 +120,7 @@ TEST_CASE("a session: counts as expected, each photon where its orientation has 
 
 TEST_CASE("files agree with each other, and parts redone alone agree with the whole") {
   const Folder folder;
-  Pass pass(20.0, 10);
+  Spin pass(20.0, 10);
   pass.scene.station->jitter_fwhm_s = 50e-12;
   pass.scene.station->pulse_fwhm_s = 200e-12;
   pass.scene.station->flag_signal = true;
@@ -169,7 +169,7 @@ TEST_CASE("files agree with each other, and parts redone alone agree with the wh
 }
 
 TEST_CASE("noise and signal are told apart; dark counts add to the noise") {
-  Pass pass(100.0, 1);
+  Spin pass(100.0, 1);
   for (auto& bin : pass.result.delay[0].bin_m2_per_sr) bin = 0.0;
   pass.scene.station->dark_per_ns = 0.002;
   Session session(pass.result, pass.scene, {});
@@ -179,7 +179,7 @@ TEST_CASE("noise and signal are told apart; dark counts add to the noise") {
 }
 
 TEST_CASE("dead time: a blind detector misses gates, and parts still agree with the whole") {
-  Pass pass(50.0, 5);
+  Spin pass(50.0, 5);
   Station& station = *pass.scene.station;
   station.noise_per_ns = 0.005;
   const double busy = -std::expm1(-0.5 - 4.0 * constants::kPi * 0.03 * link_budget(station, 532.0, 1e6).photons_per_m2);
@@ -206,7 +206,7 @@ TEST_CASE("dead time: a blind detector misses gates, and parts still agree with 
 
 TEST_CASE("a million records in under 3 s, with flat memory") {
   const Folder folder;
-  Pass pass(500.0, 50);
+  Spin pass(500.0, 50);
   for (auto& d : pass.result.delay) {
     for (double& bin : d.bin_m2_per_sr) bin *= 1e3;  // every shot a photon
   }
@@ -243,7 +243,7 @@ TEST_CASE("a session along a prediction: distances solved for, the prediction na
   }
   cpf << "99\n";
   cpf.close();
-  Pass pass(500.0, 10);
+  Spin pass(500.0, 10);
   Station& station = *pass.scene.station;
   station.cpf_file = (folder.path / "orbit.cpf").string();
   station.position_m = Vec3(6.0e6, 1.0e6, 1.0e6);
@@ -274,12 +274,12 @@ TEST_CASE("a session along a prediction: distances solved for, the prediction na
   }
   CHECK(outside == 0);
   station.start_mjd = 60270.0 + 5000.0 / 86400.0;
-  CHECK_THROWS_WITH_AS(Session(pass.result, pass.scene, {}), doctest::Contains("outside the prediction"), Error);
+  CHECK_THROWS_WITH_AS(Session(pass.result, pass.scene, {}), doctest::Contains("outside the ephemeris"), Error);
 }
 
 TEST_CASE("one session for each variant, with the link budget in the summary") {
   const Folder folder;
-  Pass pass(2.0, 2);
+  Spin pass(2.0, 2);
   const auto one = session_files(pass.result, pass.scene, folder.path.string(), without_picture());
   CHECK(one.names == std::vector<std::string>{"observations.csv", "observations.crd"});
   CHECK(one.summary_key == "session");
@@ -302,7 +302,7 @@ TEST_CASE("one session for each variant, with the link budget in the summary") {
 
 TEST_CASE("sessions whose variants have like or long names have files of their own") {
   const Folder folder;
-  Pass pass(1.0, 1);
+  Spin pass(1.0, 1);
   const DelayResult delay = pass.result.delay.front();
   pass.result.delay.clear();
   // The light of each is a share of the noise-free gate's: the files must not hold one another's photons.
@@ -326,29 +326,29 @@ TEST_CASE("sessions whose variants have like or long names have files of their o
 
 TEST_CASE("scenes that make no session are refused") {
   const auto refused = [](const char* words, auto&& change) {
-    Pass pass(20.0, 3);
+    Spin pass(20.0, 3);
     change(pass);
     CAPTURE(words);
     CHECK_THROWS_WITH_AS(Session(pass.result, pass.scene, {}), doctest::Contains(words), Error);
   };
-  refused("needs a [station]", [](Pass& p) { p.scene.station.reset(); });
-  refused("needs a [motion]", [](Pass& p) { p.scene.motion.reset(); });
-  refused("source.kind", [](Pass& p) { p.scene.source.kind = Source::Kind::sun; });
-  refused("seen from the source", [](Pass& p) {
+  refused("needs a [station]", [](Spin& p) { p.scene.station.reset(); });
+  refused("needs a [motion]", [](Spin& p) { p.scene.motion.reset(); });
+  refused("source.kind", [](Spin& p) { p.scene.source.kind = Source::Kind::sun; });
+  refused("seen from the source", [](Spin& p) {
     p.scene.observers[0].monostatic = false;
     p.scene.observers[0].direction = Vec3(1, 0, 0);
   });
   refused("station.range_m: expected a number in [1e-3,1e13], found -5",
-          [](Pass& p) { p.scene.station->range_m = -5.0; });
+          [](Spin& p) { p.scene.station->range_m = -5.0; });
   refused("station.divergence_rad: expected a number in [1e-9,4e6] urad, found 0",
-          [](Pass& p) { p.scene.station->divergence_rad = 0.0; });
-  refused("outside the table", [](Pass& p) { p.scene.station->ranges = {{0.0, 1e6}, {19.0, 1e6}}; });
-  refused("orientation 2 has no delay result", [](Pass& p) { p.result.delay.pop_back(); });
-  refused("station.cpf", [](Pass& p) {
+          [](Spin& p) { p.scene.station->divergence_rad = 0.0; });
+  refused("outside the table", [](Spin& p) { p.scene.station->ranges = {{0.0, 1e6}, {19.0, 1e6}}; });
+  refused("orientation 2 has no delay result", [](Spin& p) { p.result.delay.pop_back(); });
+  refused("station.cpf", [](Spin& p) {
     p.scene.station->cpf_file = "/nowhere/station.cpf";
     p.scene.station->position_m = Vec3(6e6, 0, 0);
   });
-  Pass pass(20.0, 3);
+  Spin pass(20.0, 3);
   CHECK_THROWS_WITH_AS(write_session(pass.result, pass.scene, "/nowhere/at/all"),
                        doctest::Contains("cannot write /nowhere/at/all/observations.csv: No such file or directory"),
                        Error);

@@ -41,9 +41,14 @@ void pressure_table(Writer& writer, const Group& group, const std::string& stem)
       "sun: unit vector toward the source, body frame; angles deg; C = F c / E m^2; T = torque c / E m^3 about the "
       "reference point; absorbed m^2; *_error: one standard error");
   const Band& band = group.front()->band;
-  if (band.low_nm < band.high_nm)
+  // In the Earth's penumbra the light of a pass changes.
+  const bool varies = std::any_of(group.begin(), group.end(), [&](const PressureResult* record) {
+    return record->source_W_m2 != group.front()->source_W_m2;
+  });
+  if (band.low_nm < band.high_nm) {
     table.comment("light of " + rounded(band.low_nm, 6) + "-" + rounded(band.high_nm, 6) + " nm, " +
-                  rounded(group.front()->source_W_m2, 6) + " W/m^2 of the source");
+                  (varies ? "source_W_m2" : rounded(group.front()->source_W_m2, 6) + " W/m^2") + " of the source");
+  }
   table.comment("force in N = C * irradiance / 299792458 m/s, with the irradiance of this light");
   std::vector<std::string> columns{"orientation", "time_s", "sun_x", "sun_y", "sun_z", "azimuth_deg", "elevation_deg"};
   for (const char* vector : {"C", "T"}) {
@@ -52,6 +57,7 @@ void pressure_table(Writer& writer, const Group& group, const std::string& stem)
     for (const char* axis : {"x", "y", "z"}) columns.push_back(vector + std::string(axis) + "_error" + unit);
   }
   columns.insert(columns.end(), {"absorbed_m2", "absorbed_error_m2"});
+  if (varies) columns.push_back("source_W_m2");
   table.columns(columns);
   for (const auto* record : group) {
     table.cell(std::uint64_t{record->key.orientation}).cell(time_of(writer.result, record->key));
@@ -59,6 +65,7 @@ void pressure_table(Writer& writer, const Group& group, const std::string& stem)
     table.cell(record->coefficient_m2.value).cell(record->coefficient_m2.standard_error);
     table.cell(record->torque_coefficient_m3.value).cell(record->torque_coefficient_m3.standard_error);
     table.cell(record->absorbed_m2.value).cell(record->absorbed_m2.standard_error);
+    if (varies) table.cell(record->source_W_m2);
     table.end_row();
   }
   table.close();

@@ -42,7 +42,8 @@ void add_band(const RoomResults& x, std::size_t v, std::size_t l, ImageResult* i
   const std::uint32_t block = find_detector(x.plan, "pixels")->first_block + kRadiance;
   const double points = static_cast<double>(x.read.points(v));
   image->bands.push_back(x.plan.request.lanes[l].band);
-  image->band_source_W_m2.push_back(source_band_W_m2(x.scene.source, x.plan.request.lanes[l].band));
+  image->band_source_W_m2.push_back(source_band_W_m2(x.scene.source, x.plan.request.lanes[l].band) *
+                                    x.plan.request.orientations[v].light);
   for (std::uint64_t p = 0; p < image->coverage.size(); ++p) {
     const double a = x.read.weight(block, v, l, 0, p) / points, b = x.read.weight(block, v, l, 1, p) / points;
     image->radiance_per_sr.push_back(0.5 * (a + b));

@@ -12,6 +12,7 @@
 #include <optional>
 
 #include "clray/error.hpp"
+#include "ephemeris/epoch.hpp"
 #include "shared/portable.h"
 #include "text/input_file.hpp"
 
@@ -38,6 +39,10 @@ constexpr Unit kUnits[] = {{"s", "time", 1, 1},
                            {"nm", "length", 1, 1e9},
                            {"angstrom", "length", 1, 1e10},
                            {"pm", "length", 1, 1e12},
+                           {"m_s", "speed", 1, 1},
+                           {"km_s", "speed", 1e3, 1},
+                           {"utc", "date", 1, 1},
+                           {"mjd", "date", 1, 1},
                            {"deg", "angle", 1, 1},
                            {"rad", "angle", 180, CLRAY_PI},
                            {"", "share", 1, 1},
@@ -121,6 +126,14 @@ std::optional<Place> place_of(const std::string& word, const std::vector<CsvColu
   const std::string name = folded(word);
   for (std::size_t c = 0; c < columns.size(); ++c) {
     const Unit& wanted = unit_of(columns[c].unit);
+    if (columns[c].dated) {
+      for (const char* date : {"utc", "time_utc", "epoch", "epoch_utc", "date", "date_utc"}) {
+        if (name == date) return Place{c, &unit_of("utc")};
+      }
+      for (const char* day : {"mjd", "time_mjd", "mjd_utc", "epoch_mjd"}) {
+        if (name == day) return Place{c, &unit_of("mjd")};
+      }
+    }
     if (!columns[c].bare.empty() && name == folded(columns[c].bare)) return Place{c, &wanted};
     for (const std::string& known : columns[c].names) {
       for (const Unit& unit : kUnits) {
@@ -136,14 +149,16 @@ std::optional<Place> place_of(const std::string& word, const std::vector<CsvColu
 std::string expected_text(const std::vector<CsvColumn>& columns) {
   std::string text;
   for (const CsvColumn& column : columns) {
+    if (column.optional) continue;
     text += (text.empty() ? "" : ", ") + (column.bare.empty() ? column.shown() : column.bare);
+    if (column.dated) text += " (or time_utc, mjd)";
     const Unit& wanted = unit_of(column.unit);
     std::string others;
     for (const Unit& unit : kUnits) {
       const bool other = std::string(unit.kind) == wanted.kind && &unit != &wanted && *unit.name != '\0';
       if (other && column.unit != "") others += (others.empty() ? "" : ", ") + std::string(unit.name);
     }
-    if (!others.empty()) text += " (or " + others + ")";
+    if (!others.empty() && !column.dated) text += " (or " + others + ")";
   }
   return text;
 }
@@ -178,7 +193,9 @@ class Reader {
  private:
   std::string order() const {
     std::string text;
-    for (const CsvColumn& column : columns_) text += (text.empty() ? "" : ",") + column.shown();
+    for (const CsvColumn& column : columns_) {
+      if (!column.optional) text += (text.empty() ? "" : ",") + column.shown();
+    }
     return text;
   }
 
@@ -187,7 +204,8 @@ class Reader {
     const std::vector<std::string> words = fields_of(text);
     const bool names = std::any_of(words.begin(), words.end(),
                                    [&](const std::string& word) { return place_of(word, columns_).has_value(); });
-    if (words.size() != columns_.size() || !names) return;
+    const auto needed = std::count_if(columns_.begin(), columns_.end(), [](const CsvColumn& c) { return !c.optional; });
+    if (words.size() > columns_.size() || words.size() < static_cast<std::size_t>(needed) || !names) return;
     comment_ = words;
     comment_line_ = line_;
   }
@@ -208,14 +226,18 @@ class Reader {
         for (std::size_t c = 0; c < columns_.size(); ++c) places_.push_back({c, &unit_of(columns_[c].unit)});
       }
     }
-    if (fields.size() != columns_.size()) {
+    if (fields.size() != places_.size()) {
       fail(table_.file, line_,
-           fmt::format("expected {} columns ({}), found {}", columns_.size(), order(), fields.size()));
+           fmt::format("expected {} columns ({}), found {}", places_.size(), order(), fields.size()));
     }
-    std::vector<double> row(columns_.size());
+    std::vector<double> row(columns_.size(), std::nan(""));
     for (std::size_t i = 0; i < fields.size(); ++i) {
       double value = 0.0;
       const CsvColumn& column = columns_[places_[i].column];
+      if (std::string(places_[i].unit->kind) == "date") {
+        read_epoch(fields[i], places_[i].unit->name);
+        continue;
+      }
       if (!is_number(fields[i], &value) || !std::isfinite(value)) {
         fail(table_.file, line_, fmt::format("{}: expected a finite number, found '{}'", column.shown(), fields[i]));
       }
@@ -223,6 +245,17 @@ class Reader {
     }
     table_.rows.push_back(std::move(row));
     table_.lines.push_back(line_);
+  }
+
+  void read_epoch(const std::string& field, const std::string& form) {
+    Epoch epoch;
+    const bool read = form == "mjd" ? ephemeris::read_mjd(field, &epoch) : ephemeris::read_date(field, &epoch);
+    if (!read) {
+      fail(table_.file, line_,
+           fmt::format("{}: expected {}, found '{}'", form == "mjd" ? "mjd" : "time_utc",
+                       form == "mjd" ? "a Modified Julian Date" : "a date such as 2026-11-25T18:02:00.5Z", field));
+    }
+    table_.epochs.push_back(epoch);
   }
 
   void read_header(const std::vector<std::string>& words, int line) {
@@ -241,7 +274,7 @@ class Reader {
       places_.push_back(*place);
     }
     for (std::size_t c = 0; c < columns_.size(); ++c) {
-      if (named[c].empty()) refuse(fmt::format("{} is missing", columns_[c].shown()));
+      if (named[c].empty() && !columns_[c].optional) refuse(fmt::format("{} is missing", columns_[c].shown()));
     }
   }
 

@@ -166,20 +166,22 @@ void read_observer_direction(TomlTable& t, const std::string& key, Observer* o) 
   const toml::node& value = *t.node(key);
   o->monostatic = value.is_string();
   if (o->monostatic) {
-    t.choice(key, {"source"});
+    o->monostatic = t.choice(key, {"source", "station"}) == "source";
+    o->toward = o->monostatic ? Toward::fixed : Toward::station;
   } else if (!value.is_array()) {
-    t.fail(key, "expected \"source\" or [x, y, z], found " + found(value));
+    t.fail(key, "expected \"source\", \"station\" or [x, y, z], found " + found(value));
   } else {
     o->direction = t.direction(key);
   }
 }
 
 void check_observer_direction(const std::string& where, const Observer& o) {
-  if (!o.monostatic) check_unit(where + ".direction", o.direction);
+  if (!o.monostatic && o.toward == Toward::fixed) check_unit(where + ".direction", o.direction);
 }
 
 std::string observer_direction_text(const Observer& o) {
   if (o.monostatic) return "source";
+  if (o.toward != Toward::fixed) return o.toward == Toward::station ? "station" : "";
   return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", o.direction.x, o.direction.y, o.direction.z);
 }
 
@@ -253,7 +255,7 @@ std::string ranges_text(const Station& s) {
 
 void read_cpf(TomlTable& t, const std::string& key, Station* s) {
   s->cpf_file = t.file(key);
-  if (!t.has("position_m")) t.missing("position_m", "three numbers [x, y, z]");
+  if (!t.has("position_m") && !t.has("site")) t.missing("position_m", "three numbers [x, y, z]");
 }
 
 void check_cpf(const std::string& where, const Station& s) {

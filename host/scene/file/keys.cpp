@@ -36,11 +36,17 @@ void store(const RowTexts& texts, Key<S> key) {
   storage<S>().push_back(std::move(key));
 }
 
+/// The name of a section in scene files.
+std::string section_name(const char* section) {
+  return std::string(section) == "attitude" ? "pass.attitude" : section;
+}
+
 /// A KEY, from the row's texts and the member's type.
 template <class S, class T>
 void add_key(const RowTexts& texts, T S::*member) {
   Key<S> key;
   static_cast<KeyRow&>(key) = parse_texts(texts);
+  key.section = section_name(texts.section);
   set_kind<T>(texts, &key);
   const KeyRow row = key;
   const T start = S{}.*member;
@@ -68,6 +74,7 @@ template <class S>
 void add_form(const RowTexts& texts, const KeyForm<S>& form) {
   Key<S> key;
   static_cast<KeyRow&>(key) = parse_texts(texts);
+  key.section = section_name(texts.section);
   if (key.fallback.empty()) key.fallback = "none";
   const std::string name = key.key.name;
   key.read = [form, name](TomlTable& t, S* s) { form.read(t, name, s); };
@@ -84,6 +91,8 @@ namespace sections {
 using source = Source;
 using observer = Observer;
 using motion = Motion;
+using pass = Pass;
+using attitude = PassAttitude;
 using station = Station;
 using trace = TraceOptions;
 }  // namespace sections
@@ -148,8 +157,8 @@ const std::vector<std::string>& key_sections() {
 
 std::vector<KeyRow> key_rows(const std::string& section) {
   std::vector<KeyRow> found;
-  for (const std::vector<KeyRow>& rows :
-       {rows_of<Source>(), rows_of<Observer>(), rows_of<Motion>(), rows_of<Station>(), rows_of<TraceOptions>()}) {
+  for (const std::vector<KeyRow>& rows : {rows_of<Source>(), rows_of<Observer>(), rows_of<Motion>(), rows_of<Pass>(),
+                                          rows_of<PassAttitude>(), rows_of<Station>(), rows_of<TraceOptions>()}) {
     if (rows.front().section == section) found = rows;
   }
   return found;
@@ -221,6 +230,8 @@ std::string key_text(const S& s) {
 CLRAY_SECTION(Source)
 CLRAY_SECTION(Observer)
 CLRAY_SECTION(Motion)
+CLRAY_SECTION(Pass)
+CLRAY_SECTION(PassAttitude)
 CLRAY_SECTION(Station)
 CLRAY_SECTION(TraceOptions)
 #undef CLRAY_SECTION

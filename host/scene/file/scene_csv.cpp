@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "clray/error.hpp"
+#include "ephemeris/epoch.hpp"
 #include "scene/file/toml_reader.hpp"
 #include "shared/portable.h"
 
@@ -71,21 +72,82 @@ std::vector<std::pair<double, double>> read_pairs(const std::string& file, const
   return pairs;
 }
 
+namespace {
+
+/// Columns of attitudes behind the time; they must be named: others put the scalar last.
+std::vector<CsvColumn> attitude_columns(bool dated) {
+  CsvColumn time{{"time", "t"}, "s"};
+  time.dated = dated;
+  return {time, {{"qw"}, ""}, {{"qx"}, ""}, {{"qy"}, ""}, {{"qz"}, ""}};
+}
+
+Quaternion unit_quaternion(const CsvTable& t, std::size_t i) {
+  const std::vector<double>& r = t.rows[i];
+  const double l = std::sqrt(r[1] * r[1] + r[2] * r[2] + r[3] * r[3] + r[4] * r[4]);
+  if (!(std::fabs(l - 1.0) <= 1e-3)) {
+    fail(t.file, t.lines[i], fmt::format("qw,qx,qy,qz: expected a quaternion of length 1, found length {}", l));
+  }
+  return Quaternion(r[1] / l, r[2] / l, r[3] / l, r[4] / l);
+}
+
+}  // namespace
+
 std::vector<Attitude> read_attitudes(const std::string& file) {
-  const CsvTable t = read_csv(file, {{{"time", "t"}, "s"}, {{"qw"}, ""}, {{"qx"}, ""}, {{"qy"}, ""}, {{"qz"}, ""}},
-                              CsvHeader::required);
+  const CsvTable t = read_csv(file, attitude_columns(false), CsvHeader::required);
   check_increasing(t, "time_s");
   std::vector<Attitude> all;
   for (std::size_t i = 0; i < t.rows.size(); ++i) {
-    const std::vector<double>& r = t.rows[i];
-    check_range(t, i, "time_s", r[0], kTime.low, kTime.high);
-    const double l = std::sqrt(r[1] * r[1] + r[2] * r[2] + r[3] * r[3] + r[4] * r[4]);
-    if (!(std::fabs(l - 1.0) <= 1e-3)) {
-      fail(file, t.lines[i], fmt::format("qw,qx,qy,qz: expected a quaternion of length 1, found length {}", l));
-    }
-    all.push_back({r[0], Quaternion(r[1] / l, r[2] / l, r[3] / l, r[4] / l)});
+    check_range(t, i, "time_s", t.rows[i][0], kTime.low, kTime.high);
+    all.push_back({t.rows[i][0], unit_quaternion(t, i)});
   }
   return all;
+}
+
+std::optional<Epoch> first_date(const CsvTable& table) {
+  return table.epochs.empty() ? std::optional<Epoch>() : table.epochs.front();
+}
+
+std::vector<double> read_times(const CsvTable& t, const Epoch& start) {
+  std::vector<double> times;
+  for (std::size_t i = 0; i < t.rows.size(); ++i) {
+    times.push_back(t.epochs.empty() ? t.rows[i][0] : ephemeris::seconds_between(start, t.epochs[i]));
+    check_range(t, i, "time_s", times[i], kTime.low, kTime.high);
+    if (i > 0 && !(times[i] > times[i - 1])) {
+      fail(t.file, t.lines[i],
+           fmt::format("time: must increase from row to row, but it is {} s after the one before",
+                       times[i] - times[i - 1]));
+    }
+  }
+  return times;
+}
+
+std::vector<Attitude> read_dated_attitudes(const std::string& file, const Epoch& start) {
+  const CsvTable t = read_csv(file, attitude_columns(true), CsvHeader::required);
+  const std::vector<double> times = read_times(t, start);
+  std::vector<Attitude> all;
+  for (std::size_t i = 0; i < t.rows.size(); ++i) all.push_back({times[i], unit_quaternion(t, i)});
+  return all;
+}
+
+std::vector<Directions::Row> read_directions(const std::string& file, const Epoch& start) {
+  CsvColumn time{{"time", "t"}, "s"}, range{{"range", "distance"}, "m"};
+  time.dated = range.optional = true;
+  const CsvTable t = read_csv(file, {time, {{"x"}, ""}, {{"y"}, ""}, {{"z"}, ""}, range}, CsvHeader::required);
+  const std::vector<double> times = read_times(t, start);
+  std::vector<Directions::Row> rows;
+  for (std::size_t i = 0; i < t.rows.size(); ++i) {
+    const std::vector<double>& r = t.rows[i];
+    const double largest = std::max({std::fabs(r[1]), std::fabs(r[2]), std::fabs(r[3])});
+    if (largest == 0.0) fail(file, t.lines[i], "x,y,z: expected a direction, found the zero vector");
+    const Vec3 v(r[1] / largest, r[2] / largest, r[3] / largest);
+    Directions::Row row{times[i], v / std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z), 0.0};
+    if (!std::isnan(r[4])) {
+      check_range(t, i, "range_m", r[4], 1e-3, 1e13);
+      row.range_m = r[4];
+    }
+    rows.push_back(row);
+  }
+  return rows;
 }
 
 BrdfTable read_brdf_table(const std::string& file) {

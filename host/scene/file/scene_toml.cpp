@@ -252,7 +252,7 @@ Scene read_scene_file(const std::string& path, const SceneOptions& options) {
   const toml::table parsed = parse_file(path);
   TomlTable root(parsed, "", path);
   root.know({"length_unit", "reference_point", "material", "component", "variant", "source", "observer", "motion",
-             "station", "detector", "trace"});
+             "pass", "station", "detector", "trace"});
   Scene scene;
   scene.path = path;
   scene.name = fs::path(path).stem().string();
@@ -264,8 +264,10 @@ Scene read_scene_file(const std::string& path, const SceneOptions& options) {
   read_components(root, options.length_unit_m > 0.0 ? options.length_unit_m : unit_m, &scene, &book);
   read_variants(root, &scene, book);
   read_detectors(root, &scene);
+  read_pass(root, &scene);
   read_source(root, &scene);
   read_observers(root, &scene);
+  read_pass_directions(root, &scene);
   read_motion(root, &scene);
   read_station(root, &scene);
   read_trace(root, &scene);
