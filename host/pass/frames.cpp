@@ -17,6 +17,7 @@ using ephemeris::Epoch;
 
 constexpr double kNode_s = 900.0;
 constexpr double kAround_s = 3600.0;
+constexpr double kMostNodes = 4000.0;  // of 40 days; they take a quarter of a second
 
 Matrix matrix_of(const double r[3][3]) {
   Matrix m;
@@ -36,20 +37,24 @@ ephemeris::TwoPartDate ut1_of(const Epoch& epoch, double ut1_utc_s) {
 EarthFrames::EarthFrames(const Epoch& start, const Epoch& stop, EarthOrientation orientation)
     : zero_(ephemeris::later(start, -kAround_s)), orientation_(std::move(orientation)) {
   const double span = ephemeris::seconds_between(zero_, stop) + kAround_s;
-  const auto count = static_cast<std::size_t>(std::ceil(span / kNode_s)) + 1;
-  for (std::size_t i = 0; i < count; ++i) {
-    const ephemeris::TwoPartDate tt = ephemeris::tt_of(ephemeris::later(zero_, static_cast<double>(i) * kNode_s));
-    Node node;
-    double npb[3][3];
-    eraPnm06a(tt.day, tt.rest, npb);
-    eraBpn2xy(npb, &node.x, &node.y);
-    node.s = eraS06(tt.day, tt.rest, node.x, node.y);
-    node.tod_of_gcrf = matrix_of(npb);
-    nodes_.push_back(node);
-  }
+  const double count = std::ceil(span / kNode_s) + 1.0;
+  if (count > kMostNodes) return;  // each epoch is then computed by itself
+  for (double i = 0.0; i < count; i += 1.0) nodes_.push_back(exact_node(ephemeris::later(zero_, i * kNode_s)));
+}
+
+EarthFrames::Node EarthFrames::exact_node(const Epoch& epoch) {
+  const ephemeris::TwoPartDate tt = ephemeris::tt_of(epoch);
+  Node node;
+  double npb[3][3];
+  eraPnm06a(tt.day, tt.rest, npb);
+  eraBpn2xy(npb, &node.x, &node.y);
+  node.s = eraS06(tt.day, tt.rest, node.x, node.y);
+  node.tod_of_gcrf = matrix_of(npb);
+  return node;
 }
 
 EarthFrames::Node EarthFrames::node_at(const Epoch& epoch) const {
+  if (nodes_.empty()) return exact_node(epoch);
   const double place = ephemeris::seconds_between(zero_, epoch) / kNode_s;
   const double last = static_cast<double>(nodes_.size() - 2);
   const double low = std::clamp(std::floor(place), 0.0, last), share = place - low;

@@ -13,7 +13,7 @@ namespace clray::pass {
 using Matrix = glm::dmat3;
 
 /// The Earth's attitude over a span of time. Precession and nutation are computed every 15 minutes, and taken linear
-/// between: that leaves 3e-12 rad.
+/// between, which leaves 3e-12 rad; over more than 40 days for each epoch by itself.
 class EarthFrames {
  public:
   /// For epochs from `start` to `stop` and an hour around them.
@@ -34,6 +34,7 @@ class EarthFrames {
     double x = 0.0, y = 0.0, s = 0.0;  ///< of the celestial intermediate pole and origin
     Matrix tod_of_gcrf{1.0};
   };
+  static Node exact_node(const ephemeris::Epoch& epoch);
   Node node_at(const ephemeris::Epoch& epoch) const;
 
   ephemeris::Epoch zero_;

@@ -49,6 +49,10 @@ class AngleSteps {
  public:
   AngleSteps(const Geometry& geometry, const Pass& pass) : geometry_(geometry), pass_(pass) {
     longest_s_ = std::max(1e-6, std::min(30.0, pass.stop_s / 16.0));
+    const PassAttitude& a = pass.attitude;
+    const bool spins = a.law == PassAttitude::Law::spin && a.file.empty() && a.attitudes.empty();
+    if (spins && pass.stop_s / a.spin_period_s * 2.0 * constants::kPi / pass.step_rad > kMostInstants)
+      too_many(pass, "step_deg");
     if (const double turn_s = geometry.attitude().short_time_s(); turn_s > 0.0)
       longest_s_ = std::min(longest_s_, turn_s);
   }
@@ -60,6 +64,13 @@ class AngleSteps {
     while (here.time_s < pass_.stop_s) {
       const double to = std::min(here.time_s + step, pass_.stop_s);
       PassInstant next = geometry_.at(to);
+      if (++looks_ > kMostLooks) {
+        fail(pass_, "step_deg",
+             fmt::format(
+                 "the aspect moves too fast for a pass of {:g} s: {} instants within its first {:g} s; expected a "
+                 "larger angle, a shorter pass, or step_s",
+                 pass_.stop_s, found.size(), here.time_s));
+      }
       if (!here.placed || !next.placed) {
         // Where the orbit's file begins or ends, to the shortest step; nothing turns while nothing is known.
         if (here.placed != next.placed && to - here.time_s > 0.01) {
@@ -103,7 +114,9 @@ class AngleSteps {
 
   const Geometry& geometry_;
   const Pass& pass_;
+  static constexpr int kMostLooks = 1000000;  // about a minute
   double longest_s_ = 0.0;
+  int looks_ = 0;
 };
 
 std::vector<double> times_of(const Pass& pass) {

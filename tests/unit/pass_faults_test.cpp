@@ -32,6 +32,9 @@ TEST_CASE("pass: faults of a scene file, before anything is traced") {
   said(change("o.oem", "p.oem"), "pass.ephemeris: there is no file \"p.oem\"; did you mean 'o.oem'?");
   said(change("ephemeris", "ephemerides"), "unknown key 'ephemerides' in [pass]; did you mean 'ephemeris'?");
   said(change("step_s = 20", "step_s = 1e-9"), "pass.step_s: makes more than 1e+06 instants");
+  said(change("step_s = 20", "step_deg = 1e-3") +
+           "[pass.attitude]\nlaw = \"spin\"\nspin = { axis = [0, 0, 1], period_s = 1e-3 }\n",
+       "pass.step_deg: makes more than 1e+06 instants");
   said(good + "[pass.attitude]\nlaw = \"spin\"\n", "pass.attitude.spin: missing");
   said(good + "[pass.attitude]\nspin = { axis = [0,0,1], period_s = 1 }\n",
        "pass.attitude.spin: belongs to law = \"spin\"");

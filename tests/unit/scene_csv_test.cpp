@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "ephemeris/epoch.hpp"
 #include "unit/scene_files.hpp"
 
 using namespace clray;
@@ -118,6 +119,43 @@ TEST_CASE("spectra, filters and pulses: their units by name") {
   CHECK(f.complaint(ball).find("rho.csv:1: columns wavelength_nm,absorptance: 'absorptance' is none of them") == 0);
   f.write("rho.csv", "wavelength_nm,rho\n400,0.1\n700,0.3\n");
   CHECK(f.complaint(ball) == "fine");
+}
+
+TEST_CASE("tables by date: ISO 8601, MJD or seconds from a start, and columns that may be left out") {
+  const SceneFolder f;
+  Epoch start;
+  REQUIRE(ephemeris::read_date("2016-12-31T23:59:50", &start));  // ten seconds and a leap second before midnight
+  const auto rows = [&](const std::string& text) { return read_directions(f.write("d.csv", text), start); };
+  const auto said = [&](const std::string& text) {
+    try {
+      rows(text);
+    } catch (const Error& e) {
+      return std::string(e.what()).substr(f.path("").size());
+    }
+    return std::string("fine");
+  };
+  for (const char* text :
+       {"time_utc,x,y,z\n2016-12-31T23:59:55Z,0,0,2\n2017-01-01T00:00:01Z,0,3,0\n", "z,y,x,t_s\n2,0,0,5\n0,3,0,12\n",
+        "# z,y,x,time_min\n2,0,0,0.08333333333333333\n0,3,0,0.2\n"}) {
+    const std::vector<Directions::Row> found = rows(text);
+    REQUIRE(found.size() == 2);
+    CHECK(found[0].time_s == doctest::Approx(5.0));
+    CHECK(found[1].time_s == doctest::Approx(12.0));
+    CHECK(found[0].direction == Vec3(0, 0, 1));
+    CHECK(found[1].direction == Vec3(0, 1, 0));
+    CHECK(found[0].range_m == 0.0);
+  }
+  const std::vector<Directions::Row> ranged = rows("mjd,x,y,z,range_km\n57753.99994212962963,1,0,0,7\n");
+  CHECK(ranged[0].time_s == doctest::Approx(5.0).epsilon(1e-9));
+  CHECK(ranged[0].range_m == 7000.0);
+  CHECK(said("time_utc,x,y,z\nyesterday,0,0,1\n") ==
+        "d.csv:2: time_utc: expected a date such as 2026-11-25T18:02:00.5Z, found 'yesterday'");
+  CHECK(said("mjd,x,y,z\n5e4,0,0,1\n") == "d.csv:2: mjd: expected a Modified Julian Date, found '5e4'");
+  CHECK(said("mjd,x,y,z\n50000,0,0,0\n") == "d.csv:2: x,y,z: expected a direction, found the zero vector");
+  CHECK(said("mjd,x,y,z,range_km\n50000,0,0,1\n").find("d.csv:2: expected 5 columns") == 0);
+  CHECK(said("mjd,x,y\n50000,0,0\n").find("d.csv:1: columns mjd,x,y: z is missing") == 0);
+  CHECK(said("0,0,0,1\n").find("d.csv:1: the columns have no names") == 0);
+  CHECK(said("time_s,x,y,z\n0,0,0,1\n0,0,0,1\n").find("d.csv:3: time: must increase") == 0);
 }
 
 TEST_CASE("tabulated BRDFs: angles in radians, columns in any order") {
