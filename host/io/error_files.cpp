@@ -156,7 +156,7 @@ void error_picture(Writer& writer, const std::vector<double>& truth) {
   plot.line("set logscale xy");
   plot.line("set grid xtics ytics mxtics mytics linecolor '#cccccc' linewidth 0.6, linecolor '#eeeeee' linewidth 0.4");
   plot.line(
-      "set key at screen 0.985, screen 0.945 right top horizontal maxrows 1 Left reverse nobox width -3 font ',13'; "
+      "set key at screen 0.985, screen 0.955 right top horizontal maxrows 1 Left reverse nobox width -3 font ',12'; "
       "set ylabel 'error relative to the value' offset 1,0; set tmargin at screen "
       "0.9");
   const bool any_confirmed = !confirmed.points.empty(), any_truth = !true_error.points.empty();

@@ -3,6 +3,7 @@
 // true error of a result is measured.
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "clray/error.hpp"
@@ -29,12 +30,60 @@ bool read_number(std::string_view text, double& value) {
 }
 
 std::string text_of(const nlohmann::json& entry, const char* key) {
-  return entry.contains(key) && entry[key].is_string() ? entry[key].get<std::string>() : std::string{};
+  return entry.is_object() && entry.contains(key) && entry[key].is_string() ? entry[key].get<std::string>()
+                                                                            : std::string{};
+}
+
+/// The cells of a line of ours, quoted as RFC 4180 says.
+std::vector<std::string> quoted_cells(std::string_view line) {
+  std::vector<std::string> cells{""};
+  bool inside = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    if (line[i] == '"') {
+      if (inside && i + 1 < line.size() && line[i + 1] == '"')
+        cells.back() += line[i++];
+      else
+        inside = !inside;
+    } else if (line[i] == ',' && !inside) {
+      cells.emplace_back();
+    } else {
+      cells.back() += line[i];
+    }
+  }
+  return cells;
+}
+
+/// The table of totals beside a summary of many orientations (summary.cpp writes its columns).
+Reference from_totals(const std::string& summary, const std::string& name) {
+  const std::filesystem::path path =
+      std::filesystem::path(summary).parent_path() / std::filesystem::path(name).filename();
+  const std::string file = path.string(), text = text::read_input_file(file);
+  Reference reference{summary, {}};
+  std::size_t number = 0;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    const std::string_view line = std::string_view(text).substr(begin, end - begin);
+    begin = end + 1;
+    ++number;
+    if (line.empty() || line[0] == '#' || line.substr(0, 9) == "detector,") continue;
+    const std::vector<std::string> c = quoted_cells(line);
+    double orientation = 0.0, of_sum = 0.0, value = 0.0;
+    if (c.size() != 10 || !read_number(c[4], orientation) || !read_number(c[6], of_sum))
+      fail(file, number, "no row of totals; expected the table that clray writes beside its summary.json");
+    if (!read_number(c[7], value)) continue;  // NaN: nothing to compare with
+    io::Total total{{c[0], c[1], c[2], c[3], static_cast<std::size_t>(orientation)}, value, 0.0, "", c[5]};
+    total.number = static_cast<std::uint64_t>(of_sum);
+    reference.totals[io::total_path(total)] = value;
+  }
+  if (reference.totals.empty()) fail(file, 0, "holds no totals to compare with");
+  return reference;
 }
 
 Reference from_summary(const std::string& file, const std::string& text) {
   const auto summary = nlohmann::json::parse(text, nullptr, false);
   if (summary.is_discarded()) fail(file, 0, "not valid JSON; expected the summary.json of a clray result");
+  if (summary.is_object() && summary.contains("totals") && !text_of(summary["totals"], "file").empty())
+    return from_totals(file, text_of(summary["totals"], "file"));
   if (!summary.is_object() || !summary.contains("totals") || !summary["totals"].is_array()) {
     fail(file, 0, "holds no totals; expected the summary.json of a clray result");
   }

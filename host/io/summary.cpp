@@ -15,9 +15,32 @@ namespace clray::io {
 
 namespace {
 
-Json totals_of(const Writer& writer) {
+/// Where a list too long for the summary is.
+Json table_of(const std::string& file, std::size_t count) {
+  return {{"file", file}, {"count", count}};
+}
+
+Json totals_table(Writer& writer, const std::vector<Total>& all) {
+  const std::string name = writer.add("totals", "csv");
+  auto table = writer.table(name, "totals of " + writer.scene_name(), "value and standard_error in the row's unit");
+  table.columns(
+      {"detector", "observer", "variant", "band", "orientation", "sum", "number", "value", "standard_error", "unit"});
+  for (const Total& total : all) {
+    const ResultKey& key = total.key;
+    for (const std::string* word : {&key.detector, &key.observer, &key.variant, &key.band})
+      table.cell(std::string_view(*word));
+    table.cell(std::uint64_t{key.orientation}).cell(std::string_view(total.sum)).cell(total.number);
+    table.cell(total.value).cell(total.standard_error).cell(std::string_view(total.unit)).end_row();
+  }
+  table.close();
+  return table_of(name, all.size());
+}
+
+Json totals_of(Writer& writer) {
+  const std::vector<Total> all = totals(writer.result);
+  if (writer.result.orientations.size() > kMostListed) return totals_table(writer, all);
   Json list = Json::array();
-  for (const auto& total : totals(writer.result)) {
+  for (const auto& total : all) {
     list.push_back({{"detector", total.key.detector},
                     {"observer", total.key.observer},
                     {"variant", total.key.variant},
@@ -96,7 +119,28 @@ Json warnings_of(const Writer& writer) {
   return list;
 }
 
-Json orientations_of(const Writer& writer) {
+Json orientations_table(Writer& writer) {
+  const auto& all = writer.result.orientations;
+  const std::string name = writer.add("orientations", "csv");
+  auto table = writer.table(name, "orientations of " + writer.scene_name(),
+                            "time_s: s; qw to qz: attitude, body to space; source, observer: unit vectors, body frame");
+  std::vector<std::string> columns{"orientation", "time_s", "qw", "qx", "qy", "qz", "source_x", "source_y", "source_z"};
+  for (std::size_t i = 0; i < all.front().observers.size(); ++i) {
+    for (const char* axis : {"_x", "_y", "_z"}) columns.push_back("observer" + std::to_string(i + 1) + axis);
+  }
+  table.columns(columns);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const auto& q = all[i].body_to_space;
+    table.cell(std::uint64_t{i}).cell(all[i].time_s).cell(q.w).cell(q.x).cell(q.y).cell(q.z).cell(all[i].source);
+    for (const auto& observer : all[i].observers) table.cell(observer);
+    table.end_row();
+  }
+  table.close();
+  return table_of(name, all.size());
+}
+
+Json orientations_of(Writer& writer) {
+  if (writer.result.orientations.size() > kMostListed) return orientations_table(writer);
   Json list = Json::array();
   for (const auto& o : writer.result.orientations) {
     const auto& q = o.body_to_space;

@@ -16,6 +16,10 @@ namespace clray::io {
 
 using Json = nlohmann::ordered_json;
 
+/// Orientations that the summary lists and delay.csv holds. More of them stand in tables and FITS files alone, so that
+/// results stay small.
+constexpr std::size_t kMostListed = 100;
+
 inline Json vector(const Vec3& v, double scale = 1.0) {
   return Json::array({v.x * scale, v.y * scale, v.z * scale});
 }
@@ -55,7 +59,10 @@ class SummaryEntries {
     std::map<std::string, std::size_t> listed;  // records so far, by band
     for (const auto* record : group) {
       const ResultKey& key = record->key;
-      if (several) {
+      if (orientations.size() > kMostListed) {
+        // Their number alone: what was found is in the tables.
+        (key.band.empty() ? place : place["bands"][shown(key.band)])["orientations"] = orientations.size();
+      } else if (several) {
         Json& list = key.band.empty() ? place["orientations"] : place["bands"][shown(key.band)]["orientations"];
         Json& numbered = list[listed[key.band]++];
         put(numbered, {{"orientation", key.orientation}, {"time_s", time_of(writer.result, key)}});

@@ -99,7 +99,7 @@ std::vector<std::string> write_result(const Result& result, const Scene& scene, 
   Reference reference;
   if (!options.reference_file.empty()) reference = load_reference(options.reference_file);
   io::Writer writer{result, scene, options, place, options.reference_file.empty() ? nullptr : &reference, {}, {}, {}};
-  for (const char* own : {"error", "summary", "pass"}) writer.names.reserve(own);
+  for (const char* own : {"error", "summary", "pass", "totals", "orientations"}) writer.names.reserve(own);
   try {
     for (const io::RecordRoom* room : io::record_rooms()) room->files(writer);
     io::write_error(writer);

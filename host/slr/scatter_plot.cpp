@@ -17,13 +17,13 @@ namespace clray::slr {
 namespace {
 
 // The plotting area of the picture, in its pixels: a cell of the grid is a pixel.
-constexpr int kWidth = 1026, kHeight = 604;
+constexpr int kWidth = 1026, kHeight = 574;
 
 text::Plot plot_of(const std::string& file, const std::string& image, const std::string& title,
                    const std::string& time_label, double start_s, double stop_s, double low_ns, double high_ns) {
   const double dx = (stop_s - start_s) / kWidth, dy = (high_ns - low_ns) / kHeight;
   text::Plot plot(file);
-  plot.line("set tics nomirror out; unset grid; set tmargin at screen 0.92; set key horizontal");
+  plot.line("set tics nomirror out; unset grid; set tmargin at screen 0.88");
   plot.line("set xlabel '" + time_label + "'; set ylabel 'delay after a path by way of the reference point (ns)'");
   plot.line("set title " + text::gnuplot_text(title) + " font ',18'");
   plot.line(

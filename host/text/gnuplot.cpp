@@ -46,7 +46,7 @@ Plot::Plot(const std::string& file, int width, int height) : file_(file) {
   line("set border 3 linecolor '#444444' linewidth 0.8");
   line("set tics nomirror textcolor '#222222'");
   line("set grid back linecolor '#dddddd' linetype 1 linewidth 0.6");
-  line("set key top right opaque box linecolor '#cccccc' width 1 height 0.4 samplen 2.5");
+  line("set key above right horizontal nobox Left reverse width -1 samplen 2 font ',13'");
   line("set lmargin at screen 0.11; set rmargin at screen 0.965; set bmargin at screen 0.115");
   line(
       "set palette defined (0 '#440154', 1 '#472c7a', 2 '#3b518b', 3 '#2c718e', 4 '#21908d', 5 '#27ad81', "

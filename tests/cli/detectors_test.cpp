@@ -147,15 +147,17 @@ TEST_CASE("a grid of Sun directions gives a table with errors and a map") {
   spit(scratch / "s.toml",
        "[[material]]\nname = \"black\"\nmodel = \"lambert\"\nrho = 0\n"
        "[[component]]\nfile = \"square.obj\"\nmaterial = \"black\"\n"
-       "[[detector]]\nkind = \"pressure\"\nazimuth_steps = 8\nelevation_steps = 5\n");
+       "[[detector]]\nkind = \"pressure\"\nazimuth_steps = 36\nelevation_steps = 7\n");
   const auto outcome = clray(scratch, {"--device", "cpu", "--rays", "16384", "--out", "o", "s.toml"});
   CAPTURE(outcome.err);
   REQUIRE(outcome.status == 0);
   CHECK(scratch.has("o/pressure.png"));
   const auto rows = rows_of(scratch / "o/pressure.csv");
-  // Three rings of eight and the poles.
-  REQUIRE(rows.size() == 26);
+  // Five rings of 36 and the poles, at the very angles that were asked for.
+  REQUIRE(rows.size() == 182);
   for (const auto& row : rows) {
+    CHECK(std::fmod(row[5], 10.0) == 0.0);
+    CHECK(std::fmod(row[6], 30.0) == 0.0);
     // A black plate of 1 m²: C = −|s_z| s, exact but for rounding (2^-36) since the beam fills the plate.
     for (std::size_t k = 0; k < 3; ++k) {
       CAPTURE(k);

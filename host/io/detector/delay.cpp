@@ -92,13 +92,15 @@ void delay_fits(Writer& writer, const Group& group, const std::string& stem) {
   const auto& first = *group.front();
   const std::size_t bins = first.bin_m2_per_sr.size();
   const double width_ns = first.bin_width_s * 1e9;
-  std::vector<double> values, errors;
+  std::vector<double> values, errors, hits, photons;
   FitsColumn index{"ORIENTATION", "", {}, {}}, time{"TIME", "s", {}, {}}, total{"INTENSITY", "m2 sr-1", {}, {}},
       error{"STANDARD_ERROR", "m2 sr-1", {}, {}};
   for (const auto* delay : group) {
     for (std::size_t bin = 0; bin < bins; ++bin) {
       values.push_back(delay->bin_m2_per_sr[bin] / width_ns);
       errors.push_back(at(delay->bin_standard_error, bin) / width_ns);
+      hits.push_back(bin < delay->hits.size() ? static_cast<double>(delay->hits[bin]) : 0.0);
+      photons.push_back(at(delay->photons_per_ns, bin));
     }
     index.numbers.push_back(static_cast<double>(delay->key.orientation));
     time.numbers.push_back(time_of(writer.result, delay->key));
@@ -114,6 +116,10 @@ void delay_fits(Writer& writer, const Group& group, const std::string& stem) {
   file.history("scene " + (writer.scene.path.empty() ? writer.scene.name : writer.scene.path));
   file.history("seed " + std::to_string(writer.result.seed) + ", digest " + hex16(writer.result.digest));
   file.image("STANDARD_ERROR", "m2 sr-1 ns-1", axes, errors);
+  if (group.size() > kMostListed) {  // what delay.csv would say
+    file.image("HITS", "", axes, hits);
+    if (!first.photons_per_ns.empty()) file.image("PHOTONS_PER_NS", "ns-1", axes, photons);
+  }
   file.table("ORIENTATIONS", {index, time, total, error});
   file.close();
 }
@@ -122,7 +128,7 @@ void write_delay(Writer& writer) {
   for (const auto& group : groups_by_band(writer.result.delay)) {
     const ResultKey& key = group.front()->key;
     const std::string stem = writer.stem("delay", key, true);
-    delay_table(writer, group, stem);
+    if (group.size() <= kMostListed || !same_bins(group)) delay_table(writer, group, stem);
     if (group.size() > 1) {
       totals_table(writer, group, stem);
       if (same_bins(group)) delay_fits(writer, group, stem);

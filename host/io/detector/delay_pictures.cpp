@@ -191,16 +191,30 @@ void delay_map_picture(Writer& writer, const std::vector<const DelayResult*>& gr
   const double step = by_time ? time_of(writer.result, group[1]->key) - start : 1.0;
   const std::string name = writer.add(stem, "png");
   Plot plot(name);
-  plot.begin_data("map");
-  Curve curve;
+  std::vector<Curve> curves;
+  double top = 0.0;
   for (std::size_t i = 0; i < group.size(); i += skip) {
-    curve = curve_of(*group[i], unit.per_second, 700);
+    curves.push_back(curve_of(*group[i], unit.per_second, 700));
+    for (const double value : curves.back().value) top = std::max(top, value);
+  }
+  // A flash of a face is thousands of times as bright as the rest of a spin: only logarithms show both.
+  const double floor = 1e-4 * top;
+  plot.begin_data("map");
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    const Curve& curve = curves[i];
     for (std::size_t bin = 0; bin < curve.value.size(); ++bin) {
-      plot.point({start + step * static_cast<double>(i), curve.start + (static_cast<double>(bin) + 0.5) * curve.width,
-                  curve.value[bin]});
+      plot.point({start + step * static_cast<double>(i * skip),
+                  curve.start + (static_cast<double>(bin) + 0.5) * curve.width, std::max(curve.value[bin], floor)});
     }
   }
   plot.end_data();
+  if (top > 0.0) {
+    plot.line("set logscale cb; set cbrange [" + number(floor) + ":" + number(top) + "]; set format cb '10^{%T}'");
+  } else {
+    plot.line(
+        "set cbrange [0:1]; set label 3 'nothing came back' at graph 0.5, graph 0.5 center font ',20' textcolor "
+        "'#ffffff' front");
+  }
   plot.line("set title " +
             gnuplot_text(delay_title(writer, first.key) + ": " + std::to_string(group.size()) + " orientations") +
             " font ',18'");

@@ -21,6 +21,12 @@ namespace {
 
 using Group = std::vector<const PressureResult*>;
 
+/// An angle of a grid as it was asked for: what a unit vector gives differs from it by rounding.
+double of_grid(double angle, double first, double steps_per_turn) {
+  const double exact = first + std::round((angle - first) * steps_per_turn / 360.0) * 360.0 / steps_per_turn;
+  return steps_per_turn > 0.0 && std::fabs(angle - exact) < 1e-9 ? exact : angle;
+}
+
 double azimuth_deg(const Vec3& s) {
   return s.x == 0.0 && s.y == 0.0 ? 0.0 : std::atan2(s.y, s.x) * constants::kDegrees;
 }
@@ -33,6 +39,20 @@ double length(const Vec3& v) {
 
 std::string title_of(const Writer& writer, const ResultKey& key) {
   return writer.title("pressure", key) + (key.band.empty() ? "" : ", " + key.band + " nm");
+}
+
+struct GridSteps {
+  double azimuths = 0.0, elevations = 0.0;
+};
+
+GridSteps grid_of(const Writer& writer, const ResultKey& key) {
+  const DetectorSpec* detector = writer.detector_of(key);
+  if (detector == nullptr) return {};
+  const auto steps = [&](const char* name) {
+    const auto given = detector->parameters.find(name);
+    return given == detector->parameters.end() ? 0.0 : given->second;
+  };
+  return {steps("azimuth_steps"), steps("elevation_steps")};
 }
 
 void pressure_table(Writer& writer, const Group& group, const std::string& stem) {
@@ -59,9 +79,11 @@ void pressure_table(Writer& writer, const Group& group, const std::string& stem)
   columns.insert(columns.end(), {"absorbed_m2", "absorbed_error_m2"});
   if (varies) columns.push_back("source_W_m2");
   table.columns(columns);
+  const GridSteps grid = grid_of(writer, group.front()->key);
   for (const auto* record : group) {
     table.cell(std::uint64_t{record->key.orientation}).cell(time_of(writer.result, record->key));
-    table.cell(record->sun).cell(azimuth_deg(record->sun)).cell(elevation_deg(record->sun));
+    table.cell(record->sun).cell(of_grid(azimuth_deg(record->sun), 0.0, grid.azimuths));
+    table.cell(of_grid(elevation_deg(record->sun), -90.0, 2.0 * (grid.elevations - 1.0)));
     table.cell(record->coefficient_m2.value).cell(record->coefficient_m2.standard_error);
     table.cell(record->torque_coefficient_m3.value).cell(record->torque_coefficient_m3.standard_error);
     table.cell(record->absorbed_m2.value).cell(record->absorbed_m2.standard_error);
@@ -147,8 +169,7 @@ void time_picture(Writer& writer, const Group& group, const std::string& stem) {
   plot.line("set title " + gnuplot_text(title_of(writer, group.front()->key) + ": radiation force, body frame") +
             " font ',18'");
   plot.line("set xlabel 'time (s)'; set ylabel 'C = F c / E  (m²)'; set autoscale xfix; set tmargin at screen 0.92");
-  plot.line(
-      "set offsets 0, 0, graph 0.12, graph 0.05; set key horizontal; set style fill transparent solid 0.25 noborder");
+  plot.line("set offsets 0, 0, graph 0.03, graph 0.03; set style fill transparent solid 0.25 noborder");
   std::string command = "plot ";
   const char* const colours[] = {"#c8511b", "#2b8a3e", "#0b4f94"};
   for (int axis = 0; axis < 3; ++axis) {
