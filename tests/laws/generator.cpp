@@ -3,8 +3,11 @@
 #include "laws/generator.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
 
 #include "scene/scene_parts.hpp"
 #include "scene/spectrum.hpp"
@@ -103,6 +106,52 @@ void draw_motion(Draw& draw, Scene* scene) {
   scene->motion = m;
 }
 
+/// A file that lives as long as the program.
+const std::string& orbit_file() {
+  struct File {
+    std::filesystem::path folder =
+        std::filesystem::temp_directory_path() / fmt::format("clray-laws-{}", static_cast<long>(::getpid()));
+    std::string name = (folder / "orbit.csv").string();
+    File() {
+      std::filesystem::create_directories(folder);
+      std::ofstream(name) << kOrbitStates;
+    }
+    ~File() { std::filesystem::remove_all(folder); }
+  };
+  static const File file;
+  return file.name;
+}
+
+/// A pass instead of the motion: the same attitudes along an orbit, with sites and the Sun for some of those who look
+/// and shine.
+void make_pass(Draw& draw, Scene* scene) {
+  const clray::Motion m = *scene->motion;
+  scene->motion.reset();
+  clray::Pass p;
+  p.start = {61369, 18 * 3600 * std::int64_t{1000000000000}};
+  p.ephemeris = orbit_file();
+  p.min_elevation_rad = -kPi / 2.0;
+  p.aberration = draw.chance(0.5);
+  p.times_s = {draw.between(0.0, 5.0), draw.between(6.0, 10.0)};
+  p.stop_s = p.times_s.back();
+  if (m.attitudes.empty()) {
+    p.attitude.law = clray::PassAttitude::Law::spin;
+    p.attitude.spin_axis = m.axis;
+    p.attitude.spin_period_s = m.period_s;
+    p.attitude.spin_phase_rad = m.phase_rad;
+    p.attitude.spin_in_orbit_frame = draw.chance(0.5);
+  }
+  p.attitude.attitudes = m.attitudes;
+  if (scene->source.kind == clray::Source::Kind::sun && draw.chance(0.5)) scene->source.toward = clray::Toward::sun;
+  for (clray::Observer& o : scene->observers) {
+    if (o.monostatic || !draw.chance(0.5)) continue;
+    o.toward = clray::Toward::site;
+    o.site_m = 6.371e6 * draw.direction();
+    o.range_m = 0.0;
+  }
+  scene->pass = p;
+}
+
 void draw_station(Draw& draw, Scene* scene) {
   clray::Station s;
   s.range_m = draw.between(3e5, 3e7);
@@ -181,6 +230,7 @@ RandomScene draw_scene(std::uint64_t seed, int frames) {
   draw_observers(draw, frame, &scene);
   if (draw.chance(0.25)) draw_motion(draw, &scene);
   draw_detectors(draw, frame, &scene);
+  if (scene.motion && !scene.station && draw.chance(0.7)) make_pass(draw, &scene);
   clray::check_scene(scene);
   return out;
 }

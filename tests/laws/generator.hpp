@@ -28,6 +28,11 @@ struct RandomScene {
   bool coincident = false;
 };
 
+/// The orbit of scenes with a pass: a body over the Sun's side of the Earth, which no shadow reaches.
+constexpr const char* kOrbitStates =
+    "time_s,x_km,y_km,z_km\n-1,-3351.417,-6161.518,-2662.5\n5,-3312.915,-6182.41,-2662.5\n"
+    "11,-3274.413,-6203.302,-2662.5\n";
+
 constexpr int kComponents = 3, kMaterials = 4;  // of every scene
 
 /// The scene of this seed: one of `frames` frames and a scene of it.

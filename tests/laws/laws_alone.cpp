@@ -86,8 +86,15 @@ Scene alone(const Scene& scene, const Result& combined, const Pick& pick, Names*
     freeze_hinges(o.source, observers[0], &one);
     freeze_range(o.time_s, &one);
     one.motion.reset();
+    one.pass.reset();
     one.source.direction = o.source;
-    for (std::size_t i = 0; i < observers.size(); ++i) one.observers[i].direction = observers[i];
+    one.source.toward = clray::Toward::fixed;
+    for (std::size_t i = 0; i < observers.size(); ++i) {
+      clray::Observer& observer = one.observers[i];
+      observer.direction = observers[i];
+      if (observer.toward != clray::Toward::fixed) observer.range_m = o.ranges_m[i];
+      observer.toward = clray::Toward::fixed;
+    }
   }
   if (pick.detector >= 0) {
     one.detectors = {scene.detectors[static_cast<std::size_t>(pick.detector)]};
@@ -161,7 +168,7 @@ std::vector<Trial> alone_trials(const RandomScene& random, const Result& combine
     pick.orientation = orientation_of(draw, scene, combined, pick.detector);
     const bool grid = is_grid(scene.detectors[d]);
     // Which attitude a grid's observers have while the body moves is no law's business.
-    if (grid && scene.motion && follows(scene, clray::Hinge::Follow::observer)) continue;
+    if (grid && (scene.motion || scene.pass) && follows(scene, clray::Hinge::Follow::observer)) continue;
     trials.push_back(trial_of("alone", scene, combined, pick));
   }
   if (scene.variants.size() + bands > 1) {

@@ -43,7 +43,7 @@ Scene member(const RandomScene& random, const Result& combined, Draw& draw) {
   pick.observer = draw.whole(0, static_cast<int>(scene.observers.size()) - 1);
   if (!scene.variants.empty()) pick.variant = draw.whole(0, static_cast<int>(scene.variants.size()) - 1);
   pick.band = draw.whole(0, static_cast<int>(clray::bands_of(scene).size()) - 1);
-  if (scene.motion) pick.orientation = 0;
+  if (scene.motion || scene.pass) pick.orientation = 0;
   Scene one = alone(scene, combined, pick, &names);
   if (pick.observer > 0) {  // a hinge would follow another observer now, which changes the scene but no law
     for (Component& c : one.components) {

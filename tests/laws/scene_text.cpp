@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "laws/generator.hpp"
 #include "scene/tables.hpp"
 #include "support/scenes.hpp"
 
@@ -54,6 +55,7 @@ class Text {
     source();
     for (const clray::Observer& o : scene_.observers) observer(o);
     if (scene_.motion) motion(*scene_.motion);
+    if (scene_.pass) pass(*scene_.pass);
     if (scene_.station) station(*scene_.station);
     for (const clray::DetectorSpec& d : scene_.detectors) {
       line("[[detector]]\nkind = \"{}\"\nname = \"{}\"", d.kind, d.name);
@@ -159,7 +161,8 @@ class Text {
   void source() {
     const clray::Source& s = scene_.source;
     const bool sun = s.kind == clray::Source::Kind::sun;
-    line("[source]\nkind = \"{}\"\ndirection = {}", sun ? "sun" : "laser", vector(s.direction));
+    line("[source]\nkind = \"{}\"\ndirection = {}", sun ? "sun" : "laser",
+         s.toward == clray::Toward::sun ? "\"sun\"" : vector(s.direction));
     if (!sun) return line("wavelength_nm = {}", number(s.wavelength_nm));
     if (s.spectrum) line("spectrum = \"{}\"", spectrum(*s.spectrum, "value"));
     if (!s.spectrum) line("irradiance_W_m2 = {}", number(s.irradiance_W_m2));
@@ -176,7 +179,11 @@ class Text {
   }
 
   void observer(const clray::Observer& o) {
-    line("[[observer]]\nname = \"{}\"\ndirection = {}", o.name, o.monostatic ? "\"source\"" : vector(o.direction));
+    const bool site = o.toward == clray::Toward::site;
+    line("[[observer]]\nname = \"{}\"\n{} = {}", o.name, site ? "ecef_m" : "direction",
+         site           ? vector(o.site_m)
+         : o.monostatic ? "\"source\""
+                        : vector(o.direction));
     line("acceptance_mrad = {}", number(o.acceptance_rad * 1e3));
     if (o.range_m > 0.0) line("range_m = {}", number(o.range_m));
   }
@@ -188,12 +195,27 @@ class Text {
            degrees(m.phase_rad), degrees(m.step_rad));
       return;
     }
+    attitudes(m.attitudes);
+  }
+
+  void attitudes(const std::vector<clray::Attitude>& list) {
     std::string rows = "time_s,qw,qx,qy,qz\n";
-    for (const clray::Attitude& a : m.attitudes) {
+    for (const clray::Attitude& a : list) {
       const auto& q = a.body_to_space;
       rows += fmt::format("{},{},{},{},{}\n", number(a.time_s), number(q.w), number(q.x), number(q.y), number(q.z));
     }
     line("attitudes = \"{}\"", file("csv", rows));
+  }
+
+  void pass(const clray::Pass& p) {
+    std::string times = "time_s\n";
+    for (const double t : p.times_s) times += number(t) + "\n";
+    line("[pass]\nstart_mjd = {}.75\naberration = {}\nmin_elevation_deg = -90", p.start.mjd, p.aberration);
+    line("ephemeris = \"{}\"\ntimes = \"{}\"\n[pass.attitude]", file("csv", kOrbitStates), file("csv", times));
+    const clray::PassAttitude& a = p.attitude;
+    if (!a.attitudes.empty()) return attitudes(a.attitudes);
+    line("law = \"spin\"\nspin = {{ axis = {}, period_s = {}, phase_deg = {}, frame = \"{}\" }}", vector(a.spin_axis),
+         number(a.spin_period_s), degrees(a.spin_phase_rad), a.spin_in_orbit_frame ? "orbit" : "gcrf");
   }
 
   void station(const clray::Station& s) {
