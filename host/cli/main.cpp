@@ -19,6 +19,7 @@
 #include "clray/pass.hpp"
 #include "clray/result.hpp"
 #include "clray/session.hpp"
+#include "clray/sizes.hpp"
 #include "environment.hpp"
 #include "report.hpp"
 #include "text/text.hpp"
@@ -119,6 +120,7 @@ int trace_and_write(const cli::Arguments& arguments, const Scene& scene, Warning
                     double load_s) {
   const std::string folder = output_folder(arguments, scene);
   check_output(folder);
+  if (const std::string fault = size_fault(scene, folder); !fault.empty()) throw Error(ErrorCode::output, fault);
   Reference reference;
   if (!arguments.reference.empty()) reference = load_reference(arguments.reference);
   Device device(arguments.device);
@@ -172,6 +174,7 @@ int run(int argc, char** argv) {
   Scene scene = load_scene(arguments.scene, arguments.scene_options);
   cli::apply(arguments, scene);
   check_scene(scene);
+  if (const std::string fault = size_fault(scene, ""); !fault.empty()) throw Error(ErrorCode::input, fault);
   if (arguments.check) {
     print(describe_scene(scene) + describe_pass(scene));  // the warnings, too
     return 0;

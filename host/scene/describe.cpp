@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "clray/scene.hpp"
+#include "clray/sizes.hpp"
 #include "scene/file/keys.hpp"
 #include "scene/motion.hpp"
 #include "scene/scene_parts.hpp"
@@ -164,6 +165,7 @@ std::string describe_scene(const Scene& scene) {
     lines.add({"detector", what});
   }
   lines.add({"trace", key_text(scene.trace)});
+  if (!scene.pass) lines.add({"results", size_text(scene)});
   std::string text = fmt::format("scene {}\n{}{}", text::shown(scene.path.empty() ? scene.name : scene.path),
                                  body_text(scene), lines.text(""));
   for (const std::string& warning : scene.warnings) text += "warning: " + text::shown(warning) + "\n";

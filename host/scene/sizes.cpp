@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+// Sizes of results; see clray/sizes.hpp. The host keeps a sum of 128 bits and a count of 64 of each replicate, the
+// device 96 bits, and a result has five numbers a bin. Bytes of files are those of rows as they are written, rounded
+// up.
+#include "clray/sizes.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "scene/motion.hpp"
+#include "scene/spectrum.hpp"
+#include "scene/tables.hpp"
+#include "text/text.hpp"
+
+namespace clray {
+namespace {
+
+constexpr double kReplicateBytes = 16.0 + 8.0 + 12.0;
+constexpr double kHalves = 2.0;  // of a picture's samples
+constexpr double kResultBytes = 40.0;
+constexpr double kTableRow = 110.0;     // of delay.csv, pressure.csv and the like
+constexpr double kFitsBin = 32.0;       // two to four doubles
+constexpr double kManyViews = 100.0;    // beyond, A(t) is in the FITS file alone
+constexpr double kPhotonBytes = 100.0;  // a row of observations.csv and one of the CRD file
+
+double value_of(const DetectorSpec& d, const TableRow& row, const char* key) {
+  const auto given = d.parameters.find(key);
+  if (given != d.parameters.end()) return given->second;
+  const TableKey* known = find_key(row, key);
+  return known != nullptr ? known->default_value : 0.0;
+}
+
+/// Bins of a delay histogram; of an automatic window with `bin_ps` the plan knows better.
+double bins_of(const DetectorSpec& d, const TableRow& row) {
+  const double start = value_of(d, row, "start_ns"), stop = value_of(d, row, "stop_ns");
+  const double bin_ps = value_of(d, row, "bin_ps");
+  if (bin_ps > 0.0 && stop > start) return std::ceil((stop - start) * 1e3 / bin_ps);
+  return value_of(d, row, "bins");
+}
+
+std::string bytes_text(double bytes) {
+  const char* const units[] = {"kB", "MB", "GB", "TB", "PB", "EB"};
+  std::size_t unit = 0;
+  double value = bytes / 1e3;
+  for (; value >= 1000.0 && unit + 1 < std::size(units); ++unit) value /= 1e3;
+  return fmt::format("{:.3g} {}", value, units[unit]);
+}
+
+}  // namespace
+
+SceneSizes scene_sizes(const Scene& scene) {
+  SceneSizes sizes;
+  const double views = scene.motion ? static_cast<double>(orientation_count(*scene.motion)) : 1.0;
+  const double observers = static_cast<double>(std::max<std::size_t>(scene.observers.size(), 1));
+  const double variants = static_cast<double>(std::max<std::size_t>(scene.variants.size(), 1));
+  const double replicates = static_cast<double>(scene.trace.replicates);
+  for (const DetectorSpec& d : scene.detectors) {
+    const TableRow& row = table_row("detector", d.kind);
+    const double bands = static_cast<double>(bands_of(scene, row).size());
+    const double records =
+        variants * bands * (row.pixel || d.kind == "delay" || d.kind == "spectrometer" ? observers : 1.0);
+    double numbers = 1.0, directions = views, file_bytes = kTableRow;
+    if (d.kind == "delay") {
+      numbers = bins_of(d, row);
+      file_bytes = views > kManyViews ? kFitsBin : kTableRow + (views > 1.0 ? kFitsBin : 0.0);
+    } else if (row.pixel) {
+      numbers = value_of(d, row, "width") * value_of(d, row, "height");
+      file_bytes = d.kind == "rgb" ? 12.0 : 16.0;
+    } else if (value_of(d, row, "azimuth_steps") > 0.0) {
+      directions = value_of(d, row, "azimuth_steps") * value_of(d, row, "elevation_steps");
+      numbers = 6.0 * static_cast<double>(scene.components.size());
+    }
+    sizes.memory +=
+        directions * records * numbers * ((row.pixel ? kHalves : replicates) * kReplicateBytes + kResultBytes);
+    sizes.disk += directions * records * numbers * file_bytes;
+  }
+  if (scene.motion && scene.station)
+    sizes.disk +=
+        kPhotonBytes * variants * std::max(0.0, scene.motion->stop_s - scene.motion->start_s) * scene.station->rate_Hz;
+  return sizes;
+}
+
+std::string size_text(const Scene& scene) {
+  const SceneSizes sizes = scene_sizes(scene);
+  return fmt::format("about {} of memory and {} on disk", bytes_text(sizes.memory), bytes_text(sizes.disk));
+}
+
+std::string size_fault(const Scene& scene, const std::string& folder) {
+  const SceneSizes sizes = scene_sizes(scene);
+  const double memory = static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGE_SIZE));
+  if (memory > 0.0 && sizes.memory > memory) {
+    return fmt::format(
+        "the results need about {} of memory, and this machine has {}; fewer bins, pixels, bands or orientations were "
+        "expected",
+        bytes_text(sizes.memory), bytes_text(memory));
+  }
+  if (folder.empty()) return "";
+  std::error_code error;
+  std::filesystem::path place = std::filesystem::absolute(folder, error);
+  while (!place.empty() && place.has_parent_path() && place != place.parent_path() &&
+         !std::filesystem::exists(place, error))
+    place = place.parent_path();
+  const auto space = std::filesystem::space(place, error);
+  if (error || sizes.disk <= static_cast<double>(space.available)) return "";
+  return fmt::format("the result needs about {} of disk, and {} has {} free", bytes_text(sizes.disk),
+                     text::shown(place.string()), bytes_text(static_cast<double>(space.available)));
+}
+
+}  // namespace clray

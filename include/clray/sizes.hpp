@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// How much memory and disk a scene's results take, before anything is traced.
+#pragma once
+
+#include "clray/scene.hpp"
+
+namespace clray {
+
+/// Bytes, within a factor of about two; what does not grow with views, lanes, bins or pixels is left out.
+struct SceneSizes {
+  double memory = 0.0;  ///< of the host, sums and results together
+  double disk = 0.0;    ///< of the files without plots
+};
+
+/// For a scene that check_scene() accepts.
+SceneSizes scene_sizes(const Scene& scene);
+
+/// "about 6.2 GB of memory and 460 MB on disk".
+std::string size_text(const Scene& scene);
+
+/// What is impossible on this machine, or "": more memory than it has, more disk than is free where `folder` will be
+/// (not looked at where that is empty).
+std::string size_fault(const Scene& scene, const std::string& folder);
+
+}  // namespace clray

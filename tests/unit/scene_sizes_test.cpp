@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// Sizes of results, stated before tracing: as measured of runs, to a factor of two, and refused where no machine has
+// them.
+#include <doctest/doctest.h>
+
+#include "clray/sizes.hpp"
+#include "unit/scene_files.hpp"
+
+using namespace clray;
+using clray::test::SceneFolder;
+
+namespace {
+
+const std::string kBall = "component = [{ shape = \"sphere\" }]\n";
+
+}  // namespace
+
+TEST_CASE("sizes: those of runs, to a factor of two") {
+  const SceneFolder f;
+  // A histogram of 10^7 bins: 6.5 GB of memory were used, and 462 MB written.
+  const SceneSizes bins = scene_sizes(f.load(kBall + "[[detector]]\nkind = \"delay\"\nbins = 10000000\n"));
+  CHECK(bins.memory == doctest::Approx(6.5e9).epsilon(0.5));
+  CHECK(bins.disk > 0.46e9);
+  CHECK(bins.disk < 2.5 * 0.46e9);
+  // A picture of 4 million pixels: 0.55 GB over what the program takes, and 41 MB written.
+  const SceneSizes picture = scene_sizes(
+      f.load(kBall + "[source]\nkind = \"sun\"\n[[detector]]\nkind = \"rgb\"\nwidth = 2000\nheight = 2000\n"));
+  CHECK(picture.memory == doctest::Approx(0.55e9).epsilon(0.5));
+  CHECK(picture.disk == doctest::Approx(41e6).epsilon(0.5));
+  // Twice the views are twice the size.
+  const std::string spin = "[motion]\naxis = [0, 0, 1]\nperiod_s = 1\nstep_deg = 36\nstop_s = ";
+  const double ten = scene_sizes(f.load(kBall + spin + "0.95\n")).memory,
+               twenty = scene_sizes(f.load(kBall + spin + "1.95\n")).memory;
+  CHECK(twenty == doctest::Approx(2.0 * ten).epsilon(1e-12));
+}
+
+TEST_CASE("sizes: what no machine has is refused with the number; no product wraps") {
+  const SceneFolder f;
+  const Scene huge = f.load(kBall +
+                            "[motion]\naxis = [0, 0, 1]\nperiod_s = 1\nstop_s = 1000\nstep_deg = 0.1\n"
+                            "[[detector]]\nkind = \"delay\"\nbins = 10000000\n");
+  // 3.6e6 orientations of 1e7 bins of 616 bytes.
+  CHECK(scene_sizes(huge).memory == doctest::Approx(3600001.0 * 1e7 * 616.0).epsilon(1e-12));
+  CHECK(size_fault(huge, "").find("the results need about 22.2 PB of memory, and this machine has ") == 0);
+  CHECK(size_fault(f.load(kBall), f.path("new/deep")).empty());
+}
