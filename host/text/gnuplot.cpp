@@ -58,6 +58,12 @@ Plot& Plot::line(std::string_view text) {
   return *this;
 }
 
+Plot& Plot::legend_beside() {
+  return line(
+      "set rmargin at screen 0.80; set key at screen 0.995, screen 0.91 right top vertical maxrows 30 nobox Left "
+      "reverse width -1 samplen 2 font ',12'");
+}
+
 Plot& Plot::begin_data(const std::string& name) {
   return line("$" + name + " << END_OF_DATA");
 }

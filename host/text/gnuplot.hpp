@@ -26,6 +26,7 @@ class Plot {
   explicit Plot(const std::string& file, int width = 1200, int height = 750);
 
   Plot& line(std::string_view text);                   ///< one command
+  Plot& legend_beside();                               ///< a column right of the data, for any number of curves
   Plot& begin_data(const std::string& name);           ///< lines of numbers follow, as `$name` in plot commands
   Plot& point(std::initializer_list<double> numbers);  ///< a line of data; not-finite numbers become NaN
   Plot& end_data();

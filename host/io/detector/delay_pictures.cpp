@@ -155,7 +155,7 @@ void delay_pulse_picture(Writer& writer, const DelayResult& delay, const std::st
   if (!(top > 0.0)) {
     plot.line("set label 3 'nothing came back' at graph 0.5, graph 0.5 center font ',20' textcolor '#888888'");
   }
-  plot.line("set key top center horizontal maxrows 1 Left reverse width -2 height 0.2 samplen 2 font ',13'");
+  plot.line("set key inside top center horizontal maxrows 1 Left reverse width -2 height 0.2 samplen 2 font ',13'");
   plot.line("set tmargin at screen " + std::string(depths ? "0.82" : "0.885"));
   plot.line("set boxwidth " + number(curve.width) + "; set style fill solid 1.0 noborder");
   std::string command = "plot ";

@@ -166,6 +166,7 @@ void time_picture(Writer& writer, const Group& group, const std::string& stem) {
     plot.point({time_of(writer.result, record->key), c.x, c.y, c.z, e.x, e.y, e.z});
   }
   plot.end_data();
+  plot.legend_beside();
   plot.line("set title " + gnuplot_text(title_of(writer, group.front()->key) + ": radiation force, body frame") +
             " font ',18'");
   plot.line("set xlabel 'time (s)'; set ylabel 'C = F c / E  (m²)'; set autoscale xfix; set tmargin at screen 0.92");

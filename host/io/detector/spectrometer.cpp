@@ -129,6 +129,7 @@ void lightcurve_picture(Writer& writer, const std::vector<Group>& bands, const s
                colour + " notitle, $" + data + " using 1:2 with lines linewidth 1.2 " + colour +
                (bands.size() > 1 ? " title " + gnuplot_text(band_label(*bands[b].front())) : " notitle");
   }
+  if (bands.size() > 1) plot.legend_beside();
   plot.line("set title " + gnuplot_text(writer.title("spectrometer", bands.front().front()->key) + ": light curve") +
             " font ',18'");
   plot.line(
