@@ -12,6 +12,8 @@
 namespace clray {
 namespace {
 
+constexpr double kMostShots = 1e12;
+
 [[noreturn]] void fail(const std::string& where, const std::string& message) {
   throw Error(ErrorCode::input, message, where);
 }
@@ -50,6 +52,10 @@ void check_station(const Scene& scene) {
                      radius));
   }
   if (s.range_m != Station{}.range_m) fail("station.range_m", "given beside [pass], whose orbit gives the range");
+  if (scene.source.kind == Source::Kind::laser && !(scene.pass->stop_s * s.rate_Hz < kMostShots)) {
+    fail("station.rate_Hz", fmt::format("makes {:.3g} shots over the pass; expected fewer than {:.0e}",
+                                        scene.pass->stop_s * s.rate_Hz, kMostShots));
+  }
   if (!s.ranges.empty()) fail("station.ranges", "given beside [pass], whose orbit gives the range");
   if (!s.cpf_file.empty()) fail("station.cpf", "given beside [pass]; expected it as pass.ephemeris");
   if (s.start_mjd != 0.0) fail("station.start_mjd", "given beside [pass], which has a start of its own");

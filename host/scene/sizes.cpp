@@ -14,6 +14,7 @@
 #include "scene/motion.hpp"
 #include "scene/spectrum.hpp"
 #include "scene/tables.hpp"
+#include "shared/portable.h"
 #include "text/text.hpp"
 
 namespace clray {
@@ -42,6 +43,15 @@ double bins_of(const DetectorSpec& d, const TableRow& row) {
   return value_of(d, row, "bins");
 }
 
+/// At most so many instants of a pass are traced; of steps by angle, as far as a spin tells, or a few turns.
+double instants_of(const Pass& pass) {
+  if (!pass.times_s.empty()) return static_cast<double>(pass.times_s.size());
+  if (pass.step_s > 0.0) return std::floor(pass.stop_s / pass.step_s) + 1.0;
+  const bool spins = pass.attitude.law == PassAttitude::Law::spin && pass.attitude.spin_period_s > 0.0;
+  const double turns = spins ? pass.stop_s / pass.attitude.spin_period_s : 2.0;
+  return std::floor(turns * 2.0 * CLRAY_PI / pass.step_rad) + 1.0;
+}
+
 std::string bytes_text(double bytes) {
   const char* const units[] = {"kB", "MB", "GB", "TB", "PB", "EB"};
   std::size_t unit = 0;
@@ -54,7 +64,9 @@ std::string bytes_text(double bytes) {
 
 SceneSizes scene_sizes(const Scene& scene) {
   SceneSizes sizes;
-  const double views = scene.motion ? static_cast<double>(orientation_count(*scene.motion)) : 1.0;
+  const double views = scene.motion ? static_cast<double>(orientation_count(*scene.motion))
+                       : scene.pass ? instants_of(*scene.pass)
+                                    : 1.0;
   const double observers = static_cast<double>(std::max<std::size_t>(scene.observers.size(), 1));
   const double variants = static_cast<double>(std::max<std::size_t>(scene.variants.size(), 1));
   const double replicates = static_cast<double>(scene.trace.replicates);
@@ -78,9 +90,10 @@ SceneSizes scene_sizes(const Scene& scene) {
         directions * records * numbers * ((row.pixel ? kHalves : replicates) * kReplicateBytes + kResultBytes);
     sizes.disk += directions * records * numbers * file_bytes;
   }
-  if (scene.motion && scene.station)
-    sizes.disk +=
-        kPhotonBytes * variants * std::max(0.0, scene.motion->stop_s - scene.motion->start_s) * scene.station->rate_Hz;
+  const double shooting_s = scene.motion ? scene.motion->stop_s - scene.motion->start_s
+                            : scene.pass ? scene.pass->stop_s
+                                         : 0.0;
+  if (scene.station) sizes.disk += kPhotonBytes * variants * std::max(0.0, shooting_s) * scene.station->rate_Hz;
   return sizes;
 }
 

@@ -50,6 +50,9 @@ TEST_CASE("pass: faults of a scene file, before anything is traced") {
   said(good + "[[observer]]\ndirections = \"d.csv\"\n", "observer.frame: missing; expected one of body, gcrf, itrf");
   said(good + "[[observer]]\nframe = \"body\"\n", "observer.frame: belongs to directions");
   said(good + "[station]\ncpf = \"o.oem\"\nposition_m = [6378137, 0, 0]\n", "station.cpf: given beside [pass]");
+  said(kPassBall + "[station]\nposition_m = [6378137, 0, 0]\nrate_Hz = 1e11\n" +
+           pass_text("step_s = 20\n").substr(kPassBall.size()),
+       "station.rate_Hz: makes 6e+13 shots over the pass; expected fewer than 1e+12");
   said(good + "[station]\nrange_m = 2e6\n", "station.range_m: given beside [pass]");
   f.write("metres.csv", "t_s,x_m,y_m,z_m\n0,7000,0,0\n1000,0,7000,0\n");
   said(change("o.oem", "metres.csv"), "from the Earth's centre, inside the Earth");
