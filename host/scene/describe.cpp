@@ -149,7 +149,14 @@ std::string describe_scene(const Scene& scene) {
     lines.add({"attitude", key_text(scene.pass->attitude)});
   }
   if (scene.station) {
-    lines.add({"station", key_text(*scene.station)});
+    std::string text;
+    for (const KeyValue& each : key_values(*scene.station)) {
+      // In a pass the orbit gives the range, and the pass the calendar.
+      const std::string& name = each.row->key.name;
+      if (each.value.empty() || (scene.pass && (name == "range_m" || name == "start_mjd"))) continue;
+      text += (text.empty() ? "" : ", ") + name + " " + each.value;
+    }
+    lines.add({"station", text});
     const std::string ranges = ranging_text(scene);
     if (!ranges.empty()) lines.add({"ranges", ranges});
   }
@@ -165,7 +172,7 @@ std::string describe_scene(const Scene& scene) {
     lines.add({"detector", what});
   }
   lines.add({"trace", key_text(scene.trace)});
-  if (!scene.pass) lines.add({"results", size_text(scene)});
+  lines.add({"results", size_text(scene)});
   std::string text = fmt::format("scene {}\n{}{}", text::shown(scene.path.empty() ? scene.name : scene.path),
                                  body_text(scene), lines.text(""));
   for (const std::string& warning : scene.warnings) text += "warning: " + text::shown(warning) + "\n";
