@@ -179,6 +179,39 @@ TEST_CASE("exposure is stops, and invisible bands give a warning and grey") {
   CHECK(warnings.front().find("no visible light") != std::string::npos);
 }
 
+TEST_CASE("a face as bright as white paper has a thin grey line round it in the PNG, a darker one has none") {
+  for (const double rho : {1.0, 0.5}) {
+    Scratch scratch;
+    Scene scene = io_test::scene("rgb");
+    scene.source.kind = Source::Kind::sun;
+    scene.source.spectrum = Spectrum{{200, 900}, {1, 1}};
+    ImageResult image = plate(rho, {{"all", 380, 780}});
+    image.width = 5;
+    image.height = 4;
+    image.coverage.assign(20, 1.0f);
+    for (const int sky : {4, 9, 14, 19}) image.coverage[static_cast<std::size_t>(sky)] = 0.0f;  // the right column
+    image.radiance_per_sr.clear();
+    for (const float share : image.coverage) image.radiance_per_sr.push_back(rho / kPi * static_cast<double>(share));
+    Result result = io_test::result();
+    result.image.push_back(image);
+    write_result(result, scene, scratch / "out", no_plots());
+    int width = 0, height = 0;
+    const auto pixels = read_png(scratch / "out/rgb.png", width, height);
+    REQUIRE(width == 5);
+    for (int y = 0; y < 4; ++y) {
+      for (int x = 0; x < 4; ++x) {
+        CAPTURE(x);
+        CAPTURE(y);
+        const bool edge = x == 0 || x == 3 || y == 0 || y == 3;
+        const std::uint8_t red = pixels[static_cast<std::size_t>(4 * (5 * y + x))];
+        if (rho == 1.0) CHECK((red == 140) == edge);
+        if (rho == 0.5) CHECK(red == pixels[0]);
+        CHECK(pixels[static_cast<std::size_t>(4 * (5 * y + x) + 3)] == 255);
+      }
+    }
+  }
+}
+
 TEST_CASE("EXR holds the linear radiance of every band") {
   Scratch scratch;
   Result result = io_test::result();

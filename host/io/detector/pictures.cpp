@@ -46,6 +46,28 @@ Linear develop(const ImageResult& image, const Source& source, bool& visible) {
   return linear;
 }
 
+/// A thin grey line round the body where it is so bright that it would be lost on a white page.
+void outline(Pixels* pixels) {
+  constexpr std::uint8_t kBright = 216, kLine = 140;
+  const int w = pixels->width, h = pixels->height;
+  const auto at = [&](int x, int y) {
+    return 4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(w) + static_cast<std::size_t>(x));
+  };
+  const auto covered = [&](int x, int y) {
+    return x >= 0 && x < w && y >= 0 && y < h && pixels->rgba[at(x, y) + 3] >= 128;
+  };
+  std::vector<std::size_t> edge;
+  for (int y = 0; y < h; ++y) {
+    for (int x = 0; x < w; ++x) {
+      if (!covered(x, y)) continue;
+      if (covered(x - 1, y) && covered(x + 1, y) && covered(x, y - 1) && covered(x, y + 1)) continue;
+      const std::uint8_t* p = &pixels->rgba[at(x, y)];
+      if (std::min({p[0], p[1], p[2]}) >= kBright) edge.push_back(at(x, y));
+    }
+  }
+  for (const std::size_t p : edge) std::fill_n(pixels->rgba.begin() + static_cast<std::ptrdiff_t>(p), 3, kLine);
+}
+
 Pixels encode(const Linear& linear, double exposure) {
   Pixels pixels{linear.width, linear.height, std::vector<std::uint8_t>(linear.rgb.size() * 4)};
   for (std::size_t i = 0; i < linear.rgb.size(); ++i) {
@@ -57,6 +79,7 @@ Pixels encode(const Linear& linear, double exposure) {
     }
     pixels.rgba[4 * i + 3] = static_cast<std::uint8_t>(std::lround(255.0 * alpha));
   }
+  outline(&pixels);
   return pixels;
 }
 
