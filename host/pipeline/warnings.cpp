@@ -41,39 +41,6 @@ constexpr double kTimesNormal = 4.0;   // over that of normal replicates; 1 in 2
 constexpr double kLeastError = 1e-6;   // relative; a smaller spread is that of fixed-point rounding
 constexpr double kUnseenShare = 0.10;  // of a total
 
-/// Says which claimed errors rest on few replicates; empty where none does.
-std::string few_replicates(const PassPlan& plan, const Geometry& geometry, const Sums& sums) {
-  const double normal = normal_variance_of_variance(static_cast<int>(plan.request.replicates));
-  int count = 0, doubtful = 0;
-  double largest = 0.0;
-  std::vector<Target> targets;
-  for (std::size_t v = 0; v < sums.points.size(); ++v) {
-    for (Target& target : targets_of(plan, geometry, sums, v)) targets.push_back(std::move(target));
-  }
-  for (const Target& target : targets) {
-    std::vector<Estimate> axes;
-    double square = target.scale * target.scale;
-    for (const auto& axis : target.components) {
-      axes.push_back(estimate_mean(axis));
-      if (!(target.scale > 0.0)) square += axes.back().value * axes.back().value;
-    }
-    bool bad = false;
-    for (const Estimate& e : axes) {
-      if (!(e.standard_error > kLeastError * std::sqrt(square))) continue;
-      bad = bad || e.relative_variance_of_variance > kTimesNormal * normal;
-      largest = std::max(largest, e.relative_variance_of_variance);
-    }
-    ++count;
-    doubtful += bad;
-  }
-  if (doubtful == 0) return "";
-  return fmt::format(
-      "the claimed error of {} rests on few of the {} replicates (relative variance of the variance {:.2g}, normal is "
-      "{:.2g}): do not trust it; trace more rays",
-      count == 1 ? "the total" : fmt::format("{} of {} totals", doubtful, count), plan.request.replicates, largest,
-      normal);
-}
-
 /// Whether the body has normals that no ray met: true of curved shapes, and of meshes so fine that many facets were
 /// never hit. A flat face has one normal, which its first ray meets.
 bool curved(const Geometry& geometry, double rays) {
@@ -120,8 +87,6 @@ double unseen_share(const PassPlan& plan, const Sums& sums) {
 std::vector<std::string> doubtful_claims(const PassPlan& plan, const Geometry& geometry, const Sums& sums) {
   std::vector<std::string> warnings;
   if (plan.request.paints()) return warnings;
-  const std::string few = few_replicates(plan, geometry, sums);
-  if (!few.empty()) warnings.push_back(few);
   const std::uint64_t fewest = *std::min_element(sums.points.begin(), sums.points.end());
   const double rays = static_cast<double>(fewest) * plan.request.replicates;
   const double share = plan.traits.connect && curved(geometry, rays) ? unseen_share(plan, sums) : 0.0;
@@ -150,6 +115,55 @@ void warn_unseen(Result* result) {
   }
 }
 
+/// A record's name with its orientation, where there are several, and how many others share its fault.
+std::string record_place(const Result& result, const ResultKey& key, const char* fallback, std::size_t count) {
+  std::string where = record_label(key, fallback);
+  if (result.orientations.size() > 1) where += fmt::format(", orientation {}", key.orientation);
+  if (count > 1) where += fmt::format("; {} in all", text::counted(count, "record"));
+  return where;
+}
+
+/// Totals whose claimed errors rest on few replicates.
+void warn_few_replicates(Result* result) {
+  const double normal = normal_variance_of_variance(result->replicates);
+  const ResultKey* worst = nullptr;
+  double most = 0.0;
+  std::size_t count = 0;
+  const auto look = [&](const ResultKey& key, std::initializer_list<Estimate> numbers, double scale) {
+    double largest = 0.0;
+    for (const Estimate& e : numbers) {
+      if (e.standard_error > kLeastError * scale) largest = std::max(largest, e.relative_variance_of_variance);
+    }
+    if (!(largest > kTimesNormal * normal)) return;
+    ++count;
+    if (largest <= most) return;
+    most = largest;
+    worst = &key;
+  };
+  const auto axis = [](const VectorEstimate& v, int k, double lever) {
+    return Estimate{v.value[k] / lever, v.standard_error[k] / lever, 0.0, 0.0, v.relative_variance_of_variance[k]};
+  };
+  for (const DelayResult& d : result->delay) look(d.key, {d.intensity_m2_per_sr}, d.intensity_m2_per_sr.value);
+  for (const SpectrometerResult& s : result->spectrometer)
+    look(s.key, {s.intensity_m2_per_sr}, s.intensity_m2_per_sr.value);
+  for (const PressureResult& p : result->pressure) {
+    const VectorEstimate &c = p.coefficient_m2, &m = p.torque_coefficient_m3;
+    const double size = std::sqrt(c.value.x * c.value.x + c.value.y * c.value.y + c.value.z * c.value.z);
+    const double lever = 0.5 * result->extent_m;
+    look(p.key,
+         {axis(c, 0, 1.0), axis(c, 1, 1.0), axis(c, 2, 1.0), axis(m, 0, lever), axis(m, 1, lever), axis(m, 2, lever)},
+         size);
+  }
+  for (const TableResult& table : result->table) {
+    for (const Estimate& e : table.values) look(table.key, {e}, std::fabs(e.value));
+  }
+  if (worst == nullptr) return;
+  result->warnings.push_back(
+      fmt::format("a claimed error rests on few of the {} replicates ({}; relative variance of the variance {:.2g}, "
+                  "normal is {:.2g}): do not trust it; trace more rays",
+                  result->replicates, record_place(*result, *worst, "total", count), most, normal));
+}
+
 /// Light outside the window of a delay record.
 void warn_outside_window(Result* result) {
   const DelayResult* worst = nullptr;
@@ -164,9 +178,7 @@ void warn_outside_window(Result* result) {
     worst = &d;
   }
   if (worst == nullptr) return;
-  std::string where = record_label(worst->key, "delay");
-  if (result->orientations.size() > 1) where += fmt::format(", orientation {}", worst->key.orientation);
-  if (count > 1) where += fmt::format("; {} in all", text::counted(count, "record"));
+  const std::string where = record_place(*result, worst->key, "delay", count);
   result->warnings.push_back(
       fmt::format("{:.2g} of the light lies outside the delay window ({}): give start_ns and stop_ns", most, where));
 }
@@ -187,6 +199,7 @@ void add_warnings(const Scene& scene, const Ending& ending, const LitRecords& li
                                              scene.trace.max_bounces, record_label(books.key, "every detector")));
   }
   warn_outside_window(result);
+  warn_few_replicates(result);
   warn_unseen(result);
   if (result->target_asked && !result->target_reached) result->warnings.push_back(missed_target(scene, ending));
 }

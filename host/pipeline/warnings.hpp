@@ -16,8 +16,8 @@ namespace clray {
 /// its records found light.
 void add_warnings(const Scene& scene, const Ending& ending, const LitRecords& lit, Result* result);
 
-/// What speaks against trusting the claimed errors of a pass: totals that rest on few replicates, and peaks that a
-/// surface could send back between the rays (docs/results.md, "Whether a claimed error can be trusted").
+/// What speaks against trusting the claimed errors of a pass: peaks that a surface could send back between the rays
+/// (docs/results.md, "Whether a claimed error can be trusted").
 std::vector<std::string> doubtful_claims(const PassPlan& plan, const Geometry& geometry, const Sums& sums);
 
 }  // namespace clray

@@ -3,8 +3,10 @@
 #include "scene/file/scene_csv.hpp"
 
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
 #include <cmath>
+#include <cstdlib>
 
 #include "ephemeris/epoch.hpp"
 #include "unit/scene_files.hpp"
@@ -156,6 +158,24 @@ TEST_CASE("tables by date: ISO 8601, MJD or seconds from a start, and columns th
   CHECK(said("mjd,x,y\n50000,0,0\n").find("d.csv:1: columns mjd,x,y: z is missing") == 0);
   CHECK(said("0,0,0,1\n").find("d.csv:1: the columns have no names") == 0);
   CHECK(said("time_s,x,y,z\n0,0,0,1\n0,0,0,1\n").find("d.csv:3: time: must increase") == 0);
+}
+
+TEST_CASE("a BRDF grid whose size wraps to zero in 64 bits is refused") {
+  if (std::getenv("CLRAY_LONG_TESTS") == nullptr) return;  // such a file has millions of rows and takes some seconds
+  constexpr int kRows = 1 << 22;                           // 2^22 x 2^21 x 2^21 angles = 2^64 cells
+  std::string text = "theta_i_deg,theta_o_deg,phi_deg,value\n";
+  for (int i = 0; i < kRows; ++i) {
+    const double other = static_cast<double>(i % (kRows / 2)) / (kRows / 2);
+    text += fmt::format("{:.6f},{:.6f},{:.5f},1\n", 90.0 * i / kRows, 90.0 * other, 180.0 * other);
+  }
+  const SceneFolder f;
+  try {
+    read_brdf_table(f.write("wraps.csv", text));
+    FAIL("no error");
+  } catch (const Error& e) {
+    CHECK(e.code() == ErrorCode::input);
+    CHECK(e.message().find("no full grid") != std::string::npos);
+  }
 }
 
 TEST_CASE("tabulated BRDFs: angles in radians, columns in any order") {

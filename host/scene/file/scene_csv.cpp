@@ -161,12 +161,15 @@ BrdfTable read_brdf_table(const std::string& file) {
     check_range(t, i, "value", t.rows[i][3], 0.0, 1e12);
   }
   const std::vector<double> axes[3] = {axis_of(t, 0), axis_of(t, 1), axis_of(t, 2)};
-  const std::size_t cells = axes[0].size() * axes[1].size() * axes[2].size();
-  if (cells > 8 * t.rows.size() + 1000) {  // far from full: refuse before allocating it
+  // The product of three sizes may not fit into 64 bits. A grid far from full is refused before it is allocated.
+  const double product =
+      static_cast<double>(axes[0].size()) * static_cast<double>(axes[1].size()) * static_cast<double>(axes[2].size());
+  if (product > 8.0 * static_cast<double>(t.rows.size()) + 1000.0) {
     fail(file, 0,
          fmt::format("{} rows are no full grid of {} x {} x {} angles", t.rows.size(), axes[0].size(), axes[1].size(),
                      axes[2].size()));
   }
+  const auto cells = static_cast<std::size_t>(product);
   std::vector<int> line_of(cells, 0);
   b.value.assign(cells, 0.0);
   for (std::size_t i = 0; i < t.rows.size(); ++i) {
