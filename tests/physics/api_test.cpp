@@ -372,9 +372,8 @@ TEST_CASE("text that is not JSON does not enter the summary") {
   clray::WriteOptions options;
   options.plots = false;
   options.more.push_back([](const std::string&) { return clray::MoreFiles{{}, "mine", "{not json"}; });
-  const clray::Result result = clray::trace(scene, device());
   try {
-    clray::write_result(result, scene, folder.name + "/out", options);
+    clray::write_result(clray::trace(scene, device()), scene, folder.name + "/out", options);
     FAIL("no error");
   } catch (const Error& e) {  // nothing appears; what was finished stays where the message says
     CHECK((e.code() == ErrorCode::usage && e.context() == "MoreFiles.mine"));
