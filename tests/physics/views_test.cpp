@@ -15,17 +15,22 @@ using clray::Scene;
 
 namespace {
 
-/// A box and a wing that spin between a source and an observer that stand 40 degrees apart.
-Scene spinning(int steps) {
-  Scene scene = scene_of(box_mesh(1.0, 2.0, 1.5), ashikhmin_shirley(0.6, 0.5, 20.0));
-  add(scene, moved(plate_mesh(3.0, 1.0), {2.5, 0.0, 0.1}), lambert(0.3));
-  bistatic(scene, toward(1.1), toward(1.8));
+/// One turn about y in so many steps.
+clray::Motion full_turn(int steps) {
   clray::Motion motion;
   motion.axis = {0.0, 1.0, 0.0};
   motion.period_s = 360.0;
   motion.step_rad = 2.0 * kPi / steps;
   motion.stop_s = 360.0 * (steps - 0.5) / steps;
-  scene.motion = motion;
+  return motion;
+}
+
+/// A box and a wing that spin between a source and an observer that stand 40 degrees apart.
+Scene spinning(int steps) {
+  Scene scene = scene_of(box_mesh(1.0, 2.0, 1.5), ashikhmin_shirley(0.6, 0.5, 20.0));
+  add(scene, moved(plate_mesh(3.0, 1.0), {2.5, 0.0, 0.1}), lambert(0.3));
+  bistatic(scene, toward(1.1), toward(1.8));
+  scene.motion = full_turn(steps);
   detect(scene, "spectrometer");
   scene.detectors.push_back({"delay", "delay", {{"bins", 32}, {"start_ns", -30.0}, {"stop_ns", 30.0}}});
   scene.detectors.push_back({"pressure", "pressure", {}});
@@ -111,12 +116,7 @@ TEST_CASE("views share no random numbers") {
   constexpr int kSteps = 90;
   Scene scene = scene_of("sphere", {{"radius", 1.0}}, lambert(1.0));
   monostatic(scene, {0.0, 0.0, 1.0});
-  clray::Motion motion;
-  motion.axis = {0.0, 1.0, 0.0};
-  motion.period_s = 360.0;
-  motion.step_rad = 2.0 * kPi / kSteps;
-  motion.stop_s = 360.0 * (kSteps - 0.5) / kSteps;
-  scene.motion = motion;
+  scene.motion = full_turn(kSteps);
   scene.trace.sobol = false;
   const Result result = run(rays(detect(scene, "spectrometer"), 12));
   REQUIRE(result.spectrometer.size() == kSteps);

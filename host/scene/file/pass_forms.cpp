@@ -277,13 +277,7 @@ void read_attitude_table(TomlTable& t, const std::string& key, PassAttitude* a) 
   a->attitudes_file = t.file(key);
 }
 void check_attitude_table(const std::string& where, const PassAttitude& a) {
-  for (std::size_t i = 0; i < a.attitudes.size(); ++i) {
-    const Quaternion& q = a.attitudes[i].body_to_space;
-    if (!(std::fabs(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z - 1.0) <= 1e-9))
-      throw Error(ErrorCode::input, "expected quaternions of length 1", where + ".attitudes");
-    if (i > 0 && !(a.attitudes[i].time_s > a.attitudes[i - 1].time_s))
-      throw Error(ErrorCode::input, "times must increase", where + ".attitudes");
-  }
+  check_attitudes(where + ".attitudes", a.attitudes, kAny);
 }
 std::string attitude_table_text(const PassAttitude& a) {
   return a.attitudes.empty() ? "" : text::counted(a.attitudes.size(), "row");

@@ -94,6 +94,17 @@ void check_spectrum(const std::string& where, const Spectrum& s, const TableKey*
   }
 }
 
+void check_attitudes(const std::string& where, const std::vector<Attitude>& attitudes, const Range& time) {
+  for (std::size_t i = 0; i < attitudes.size(); ++i) {
+    const Quaternion& q = attitudes[i].body_to_space;
+    const double square = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
+    check_number(where + ".time_s", attitudes[i].time_s, time);
+    if (i > 0 && !(attitudes[i].time_s > attitudes[i - 1].time_s))
+      throw Error(ErrorCode::input, "times must increase", where);
+    if (!(std::fabs(square - 1.0) <= 1e-9)) throw Error(ErrorCode::input, "expected quaternions of length 1", where);
+  }
+}
+
 void check_pairs(const std::string& where, const std::vector<std::pair<double, double>>& pairs, const Range& range) {
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     check_number(where, pairs[i].first, kAny);

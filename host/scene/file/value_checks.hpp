@@ -45,6 +45,9 @@ void check_angle(const std::string& where, double angle_rad);
 /// not negative.
 void check_spectrum(const std::string& where, const Spectrum& spectrum, const TableKey* key = nullptr);
 
+/// Times in `time`, increasing, and quaternions of length 1.
+void check_attitudes(const std::string& where, const std::vector<Attitude>& attitudes, const Range& time);
+
 /// (time, value): finite and increasing times, values in `range`.
 void check_pairs(const std::string& where, const std::vector<std::pair<double, double>>& pairs, const Range& range);
 
