@@ -181,6 +181,7 @@ void write_summary(Writer& writer, const std::vector<MoreFiles>& more) {
   SummaryEntries entries(writer);
   for (const RecordRoom* room : record_rooms()) room->summary(entries);
   summary["detectors"] = entries.detectors;
+  if (Json curves = light_curves_entry(writer); !curves.empty()) summary["light_curves"] = std::move(curves);
   summary["totals"] = totals_of(writer);
   for (const auto& part : more) {
     if (part.summary_key.empty()) continue;

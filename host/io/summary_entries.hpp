@@ -27,6 +27,9 @@ inline Json vector(const Vec3& v, double scale = 1.0) {
 /// A pass in short: its span, and how many instants are traced and why others are not.
 Json pass_entry(const Result& result);
 
+/// A row per light curve and band: its phases, and its magnitude at 1000 km and 90 degrees or why there is none.
+Json light_curves_entry(const Writer& writer);
+
 inline Json value_and_error(const Estimate& estimate) {
   return {{"value", estimate.value},
           {"standard_error", estimate.standard_error},

@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/matrix.hpp>
+#include <limits>
 
 #include "clray/constants.hpp"
 #include "clray/error.hpp"
@@ -139,14 +140,16 @@ void Geometry::place_observers(const Moment& m, PassInstant* instant) const {
   for (std::size_t i = 0; i < scene_.observers.size(); ++i) {
     const Observer& o = scene_.observers[i];
     Vec3 direction = view.source;
-    double range_m = 0.0;
+    double range_m = 0.0, elevation_rad = std::numeric_limits<double>::quiet_NaN();
     if (at_source(o, scene_.source)) {
       range_m = view.source_range_m;
+      if (scene_.source.toward == Toward::station) elevation_rad = instant->sites.front().elevation_rad;
     } else if (o.toward == Toward::site || o.toward == Toward::station) {
       Vec3 toward(0.0);
       SiteSight sight = sight_from(m, o.toward == Toward::site ? o.site_m : scene_.station->position_m, &toward);
       sight.observer = static_cast<int>(i);
       range_m = sight.range_m;
+      elevation_rad = sight.elevation_rad;
       direction = m.in_body(toward, speed, -1.0);
       instant->sites.push_back(sight);
     } else if (o.toward == Toward::table) {
@@ -158,6 +161,7 @@ void Geometry::place_observers(const Moment& m, PassInstant* instant) const {
     }
     view.observers.push_back(direction);
     view.ranges_m.push_back(range_m > 0.0 ? range_m : o.range_m);
+    view.elevations_rad.push_back(elevation_rad);
   }
 }
 

@@ -49,4 +49,7 @@ std::vector<std::string> ranging_warnings(const Scene& scene);
 /// The station's ranges during the motion, for a person; empty where they are fixed.
 std::string ranging_text(const Scene& scene);
 
+/// What is wrong with an observer's extinction in its scene, or "".
+std::string extinction_fault(const Scene& scene, const Observer& observer);
+
 }  // namespace clray

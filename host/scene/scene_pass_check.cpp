@@ -3,11 +3,13 @@
 // is checked where its instants are computed (host/pass).
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "clray/error.hpp"
 #include "scene/file/keys.hpp"
 #include "scene/scene_parts.hpp"
+#include "scene/spectrum.hpp"
 
 namespace clray {
 namespace {
@@ -63,7 +65,29 @@ void check_station(const Scene& scene) {
 
 }  // namespace
 
+std::string extinction_fault(const Scene& scene, const Observer& o) {
+  if (o.extinction_mag.empty()) return "";
+  const bool at_laser = o.monostatic && scene.source.kind == Source::Kind::laser;
+  if (!scene.pass || !(o.toward == Toward::site || o.toward == Toward::station || at_laser))
+    return "needs the elevation of the body; expected a [pass], and a site of this observer";
+  if (o.extinction_mag.count("") > 0) return "";
+  std::vector<std::string> names;
+  for (const Band& band : bands_of(scene)) names.push_back(band.name);
+  for (const auto& entry : o.extinction_mag) {
+    if (std::find(names.begin(), names.end(), entry.first) == names.end())
+      return fmt::format("there is no band \"{}\"; expected {}", entry.first, fmt::join(names, ", "));
+  }
+  for (const std::string& name : names) {
+    if (o.extinction_mag.count(name) == 0) return fmt::format("a number for the band \"{}\" is missing", name);
+  }
+  return "";
+}
+
 void check_pass(const Scene& scene) {
+  for (std::size_t i = 0; i < scene.observers.size(); ++i) {
+    if (const std::string fault = extinction_fault(scene, scene.observers[i]); !fault.empty())
+      fail(fmt::format("observers[{}].extinction_mag", i), fault);
+  }
   if (!scene.pass) return check_without(scene);
   const Pass& p = *scene.pass;
   if (scene.motion) fail("motion", "given beside a pass; expected only one of them");

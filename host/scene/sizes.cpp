@@ -24,6 +24,7 @@ constexpr double kReplicateBytes = 16.0 + 8.0 + 12.0;
 constexpr double kHalves = 2.0;  // of a picture's samples
 constexpr double kResultBytes = 40.0;
 constexpr double kTableRow = 110.0;     // of delay.csv, pressure.csv and the like
+constexpr double kCurveRow = 600.0;     // of lightcurve.csv and spectrum.csv together
 constexpr double kFitsBin = 32.0;       // two to four doubles
 constexpr double kManyViews = 100.0;    // beyond, A(t) is in the FITS file alone
 constexpr double kPhotonBytes = 100.0;  // a row of observations.csv and one of the CRD file
@@ -79,6 +80,8 @@ SceneSizes scene_sizes(const Scene& scene) {
     if (d.kind == "delay") {
       numbers = bins_of(d, row);
       file_bytes = views > kManyViews ? kFitsBin : kTableRow + (views > 1.0 ? kFitsBin : 0.0);
+    } else if (d.kind == "spectrometer" && views > 1.0) {
+      file_bytes = kCurveRow;
     } else if (row.pixel) {
       numbers = value_of(d, row, "width") * value_of(d, row, "height");
       file_bytes = d.kind == "rgb" ? 12.0 : 16.0;

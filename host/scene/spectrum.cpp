@@ -182,6 +182,13 @@ double ab_zero_W_m2(const Band& band) {
   return constants::kAbZero_W_m2_Hz * constants::kLightSpeed_m_s * 1e9 * sum;
 }
 
+double vega_zero_W_m2(const Band& band) {
+  Source vega;
+  vega.kind = Source::Kind::sun;
+  vega.spectrum = vega_spectrum();
+  return source_band_W_m2(vega, band) * std::pow(10.0, 0.4 * band.vega_magnitude);
+}
+
 double source_band_W_m2(const Source& source, const Band& band) {
   if (source.kind == Source::Kind::laser) return response_at(band, source.wavelength_nm);
   if (band.response) return band_light(band, source);

@@ -14,6 +14,12 @@
 
 namespace clray {
 
+/// Vega above the atmosphere, 100 nm to 10 µm, W/m²/nm.
+const Spectrum& vega_spectrum();
+
+/// Whether a band is a photometric_band(), under whatever name.
+bool is_photometric(const Band& band);
+
 /// Value at a wavelength: linear between points, constant beyond them.
 double spectrum_at(const Spectrum& spectrum, double wavelength_nm);
 
@@ -37,6 +43,10 @@ double response_at(const Band& band, double wavelength_nm);
 /// Irradiance within a band of what has the AB magnitude 0: 3631 Jy at every frequency (Oke & Gunn 1983), weighted by
 /// the band's response in energy, W/m². 0 for a band of no width.
 double ab_zero_W_m2(const Band& band);
+
+/// The same of what has the Vega magnitude 0 in the band: Vega's light, and the magnitude that Vega itself has there.
+/// 0 where Vega's table (100 nm to 10 µm) has no light.
+double vega_zero_W_m2(const Band& band);
 
 /// Irradiance of the source that passes a band, W/m². A laser has unit irradiance, all of it in its line: 1 if the band
 /// holds wavelength_nm (ends included), else 0; times the band's response. A sun is its spectrum table (nothing beyond

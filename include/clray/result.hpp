@@ -54,6 +54,8 @@ struct Orientation {
   std::vector<double> ranges_m{};  ///< to each observer at that time; 0: not known
   double light = 1.0;              ///< irradiance of the source, as a share of the one that the scene states
   double source_range_m = 0.0;     ///< to a laser's station; 0: not known
+  /// Of the body over the horizon of each observer's site; NaN, or no entry, where there is none.
+  std::vector<double> elevations_rad{};
 };
 
 /// A place on the Earth at an instant of a pass, as light from the body arrives there (from a station: midway between
@@ -105,7 +107,10 @@ struct SpectrometerResult {
   double source_W_m2 = 0.0;                                        ///< of the source inside the band
   double received_W_m2 = 0.0, received_W_m2_standard_error = 0.0;  ///< at the observer's range; 0 without one
   double magnitude_AB = 0.0, magnitude_standard_error = 0.0;       ///< NaN without a range
+  double magnitude_Vega = 0.0;                                     ///< NaN also where Vega's table has no light
   double phase_angle_rad = 0.0;
+  double air_mass = 0.0;        ///< on the way to the observer's site; NaN where none is known
+  double extinction_mag = 0.0;  ///< within received power and magnitudes: the observer's, times the air mass
 };
 
 /// Radiation force and torque per unit irradiance, net of all bounces.

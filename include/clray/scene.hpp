@@ -114,7 +114,18 @@ struct Band {
   /// Transmission of a filter against wavelength, any scale; null: a top hat. Nothing passes outside [low, high]
   /// nor beyond the table's ends.
   std::shared_ptr<const Spectrum> response = nullptr;
+  double vega_magnitude = 0.0;  ///< of Vega in this band, which is the zero point of Vega magnitudes
+  bool in_vega = false;         ///< whether observers state magnitudes of this band in the Vega system, else in AB
 };
+
+/// The filters that clray knows by name: "B", "V", "R", "I" (Johnson-Cousins), "G" (Gaia), "g", "r", "i", "z" (Sloan).
+const std::vector<std::string>& photometric_bands();
+
+/// One of them; host/scene/photometry/README.md has their sources. Throws Error(input) for another name.
+Band photometric_band(const std::string& name);
+
+/// The Sun at 1 au, 119.5 to 10000 nm, W/m²/nm.
+const Spectrum& solar_spectrum();
 
 /// Frames of orbits and directions. Geocentric: gcrf (axes of the ICRF), eme2000 (mean equator and equinox of J2000),
 /// tod (true equator and equinox of date), teme (true equator, mean equinox), itrf (fixed to the Earth).
@@ -166,6 +177,8 @@ struct Observer {
   Toward toward = Toward::fixed;
   Vec3 site_m{0.0};         ///< of Toward::site: its place, Earth-fixed
   Directions directions{};  ///< of Toward::table
+  /// Magnitudes that the atmosphere takes per air mass, by the name of a band; "": in every band. Of a site in a pass.
+  std::map<std::string, double> extinction_mag{};
 };
 
 /// Whether an observer is at the source: the scene says so, or the two are the same place, or the two fixed directions

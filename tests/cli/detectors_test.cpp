@@ -116,12 +116,30 @@ TEST_CASE("light curve of a turning plate: magnitude, brighter when it faces the
   CHECK(scratch.has("o/lightcurve.png"));
   const auto rows = rows_of(scratch / "o/lightcurve.csv");
   REQUIRE(rows.size() == 4);
-  // A ∝ cos²θ: magnitudes differ by −5 log10 cos θ.
+  // A ∝ cos²θ: magnitudes differ by −5 log10 cos θ. Column 5 is magnitude_AB, 12 is A.
   for (std::size_t i = 1; i < 3; ++i)
-    CHECK(rows[i][2] - rows[0][2] ==
+    CHECK(rows[i][5] - rows[0][5] ==
           doctest::Approx(-5.0 * std::log10(std::cos(kPi / 6.0 * static_cast<double>(i)))).epsilon(1e-3));
-  CHECK(std::isnan(rows[3][2]));
-  CHECK(rows[3][4] == 0.0);
+  CHECK(std::isnan(rows[3][5]));
+  CHECK(rows[3][12] == 0.0);
+}
+
+TEST_CASE("bands whose names differ in case alone have files of their own, and rows of their own in one light curve") {
+  const Scratch scratch;
+  spit(scratch / "v.csv", "500,0\n550,1\n600,0\n");
+  spit(scratch / "s.toml",
+       "[[component]]\nshape = \"sphere\"\n[source]\nkind = \"sun\"\nbands = [\"V\", \"v.csv\", \"G\", \"g\"]\n"
+       "[motion]\naxis = [0, 1, 0]\nperiod_s = 360\nstop_s = 30\nstep_deg = 30\n[[detector]]\nkind = \"delay\"\n"
+       "[[detector]]\nkind = \"spectrometer\"\n");
+  const auto outcome = clray(scratch, {"--device", "cpu", "--rays", "4096", "--no-plots", "--out", "o", "s.toml"});
+  CAPTURE(outcome.err);
+  REQUIRE(outcome.status == 0);
+  for (const char* file : {"delay-V.csv", "delay-v-2.csv", "delay-G.csv", "delay-g-2.csv"})
+    CHECK(scratch.has(std::string("o/") + file));
+  CHECK(rows_of(scratch / "o/lightcurve.csv").size() == 8);
+  const Json bands = summary(scratch, "o")["detectors"]["spectrometer"]["bands"];
+  CHECK(bands["V"]["orientations"][0]["source_W_m2"] != bands["v"]["orientations"][0]["source_W_m2"]);
+  CHECK(bands["G"]["orientations"][0]["source_W_m2"] != bands["g"]["orientations"][0]["source_W_m2"]);
 }
 
 TEST_CASE("a picture of a bare mesh is lit from the side and anti-aliased") {

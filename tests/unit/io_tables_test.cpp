@@ -364,11 +364,13 @@ TEST_CASE("spectra, light curves and pressure tables read back exactly") {
   const Table spectrum = read_table(scratch / "out/spectrum.csv");
   REQUIRE(spectrum.rows.size() == 4);
   const Table curve = read_table(scratch / "out/lightcurve.csv");
-  REQUIRE(curve.rows.size() == 2);
-  CHECK(curve.columns[2] == "magnitude_400-500");
-  CHECK(parse(curve.rows[1][0]) == 1.0 / 3.0);
-  CHECK(parse(curve.rows[1][1]) == doctest::Approx(28.6478897565412).epsilon(1e-14));
-  CHECK(parse(curve.rows[1][4]) == 2.0 / 3.0);
+  REQUIRE(curve.rows.size() == 4);
+  CHECK(curve.columns[5] == "magnitude_AB");
+  CHECK(curve.rows[3][4] == "500, 600");  // read_table() drops quotes
+  CHECK(parse(curve.rows[3][3]) == 1.0 / 3.0);
+  CHECK(parse(curve.rows[3][5]) == 1.0 / 7.0);
+  CHECK(parse(curve.rows[3][12]) == 2.0 / 3.0);
+  CHECK(parse(curve.rows[3][14]) == doctest::Approx(28.6478897565412).epsilon(1e-14));
   const Table pressure = read_table(scratch / "out/pressure.csv");
   REQUIRE(pressure.rows.size() == 2);
   CHECK(parse(pressure.rows[0][5]) == doctest::Approx(90.0));

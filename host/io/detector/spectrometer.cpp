@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The one-pixel spectrometer in files and on the terminal: spectrum.csv/.png (per band), and for several orientations
-// lightcurve.csv/.png (per time). Intensities in m²/sr, received flux in W/m², AB magnitudes (zero point 3631 Jy).
+// light curves (lightcurve.hpp). Intensities in m²/sr, received flux in W/m², magnitudes.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "clray/constants.hpp"
+#include "io/detector/lightcurve.hpp"
 #include "io/detector/room.hpp"
 #include "io/detector/words.hpp"
 #include "io/summary_entries.hpp"
@@ -17,32 +17,26 @@ namespace clray::io {
 
 namespace {
 
-constexpr const char* kColours[] = {"#0b4f94", "#c8511b", "#2b8a3e", "#8a2b84",
-                                    "#a67c00", "#3aa6a6", "#555555", "#d63a6a"};
 using Group = std::vector<const SpectrometerResult*>;
-
-std::string band_name(const SpectrometerResult& record) {
-  const std::string& name = record.key.band.empty() ? record.band.name : record.key.band;
-  return !name.empty() ? name : rounded(record.band.low_nm, 6) + "-" + rounded(record.band.high_nm, 6);
-}
-
-/// The name, with nm behind it if it is a range of wavelengths.
-std::string band_label(const SpectrometerResult& record) {
-  const std::string name = band_name(record);
-  return name.find_first_not_of("0123456789.-") == std::string::npos ? name + " nm" : name;
-}
 
 void spectrum_table(Writer& writer, const Group& group, const std::string& stem, bool moving) {
   auto table = writer.table(
       writer.add(stem, "csv"), "intensity per wavelength band of " + writer.title("spectrometer", group.front()->key),
       "wavelengths nm; intensity m^2/sr per unit irradiance in the band; source and received W/m^2 in the "
-      "band; magnitude AB: 0 is what 3631 Jy at every frequency gives through the same band, in energy");
+      "band; magnitude AB: 0 is what 3631 Jy at every frequency gives through the same band, in energy; magnitude "
+      "Vega: Vega's own is 0.03 in B V R I, else 0");
   table.comment("received_W_m2 is 0 and magnitudes are nan where the scene states no range");
-  std::vector<std::string> columns{"band",           "low_nm",
-                                   "high_nm",        "intensity_m2_per_sr",
-                                   "standard_error", "source_W_m2",
-                                   "received_W_m2",  "received_standard_error",
-                                   "magnitude_AB",   "magnitude_standard_error"};
+  std::vector<std::string> columns{"band",
+                                   "low_nm",
+                                   "high_nm",
+                                   "intensity_m2_per_sr",
+                                   "standard_error",
+                                   "source_W_m2",
+                                   "received_W_m2",
+                                   "received_standard_error",
+                                   "magnitude_AB",
+                                   "magnitude_Vega",
+                                   "magnitude_standard_error"};
   if (moving) columns.insert(columns.begin(), {"orientation", "time_s", "phase_angle_deg"});
   table.columns(columns);
   for (const auto* record : group) {
@@ -53,91 +47,10 @@ void spectrum_table(Writer& writer, const Group& group, const std::string& stem,
     table.cell(std::string_view(band_name(*record))).cell(record->band.low_nm).cell(record->band.high_nm);
     table.cell(record->intensity_m2_per_sr.value).cell(record->intensity_m2_per_sr.standard_error);
     table.cell(record->source_W_m2).cell(record->received_W_m2).cell(record->received_W_m2_standard_error);
-    table.cell(record->magnitude_AB).cell(record->magnitude_standard_error);
+    table.cell(record->magnitude_AB).cell(record->magnitude_Vega).cell(record->magnitude_standard_error);
     table.end_row();
   }
   table.close();
-}
-
-/// Records by band in order of first appearance, each in the order of its orientations.
-std::vector<Group> by_band(const Group& group) {
-  std::vector<Group> bands;
-  std::map<std::string, std::size_t> place;
-  for (const auto* record : group) {
-    const auto [entry, is_new] = place.emplace(band_name(*record), bands.size());
-    if (is_new) bands.emplace_back();
-    bands[entry->second].push_back(record);
-  }
-  return bands;
-}
-
-void lightcurve_table(Writer& writer, const std::vector<Group>& bands, const std::string& stem) {
-  auto table = writer.table(
-      writer.add(stem, "csv"), "light curve of " + writer.title("spectrometer", bands.front().front()->key),
-      "time s; phase angle (source - body - observer) deg; magnitude AB; intensity m^2/sr; *_error: one "
-      "standard error");
-  std::vector<std::string> columns{"time_s", "phase_angle_deg"};
-  for (const auto& band : bands) {
-    const std::string name = bands.size() > 1 ? "_" + band_name(*band.front()) : "";
-    for (const char* column : {"magnitude", "magnitude_error", "intensity", "intensity_error"})
-      columns.push_back(column + name);
-  }
-  table.columns(columns);
-  for (std::size_t i = 0; i < bands.front().size(); ++i) {
-    const auto& first = *bands.front()[i];
-    table.cell(time_of(writer.result, first.key)).cell(first.phase_angle_rad * constants::kDegrees);
-    for (const auto& band : bands) {
-      if (i >= band.size()) {
-        for (int k = 0; k < 4; ++k) table.cell(std::nan(""));
-        continue;
-      }
-      table.cell(band[i]->magnitude_AB).cell(band[i]->magnitude_standard_error);
-      table.cell(band[i]->intensity_m2_per_sr.value).cell(band[i]->intensity_m2_per_sr.standard_error);
-    }
-    table.end_row();
-  }
-  table.close();
-}
-
-bool any_magnitude(const std::vector<Group>& bands) {
-  for (const auto& band : bands) {
-    for (const auto* record : band) {
-      if (std::isfinite(record->magnitude_AB)) return true;
-    }
-  }
-  return false;
-}
-
-void lightcurve_picture(Writer& writer, const std::vector<Group>& bands, const std::string& stem) {
-  const bool magnitudes = any_magnitude(bands);
-  const std::string name = writer.add(stem, "png");
-  Plot plot(name);
-  std::string command = "plot ";
-  for (std::size_t b = 0; b < bands.size(); ++b) {
-    const std::string data = "band" + std::to_string(b);
-    plot.begin_data(data);
-    for (const auto* record : bands[b]) {
-      const auto& a = record->intensity_m2_per_sr;
-      const double y = magnitudes ? record->magnitude_AB : a.value;
-      const double e = magnitudes ? record->magnitude_standard_error : a.standard_error;
-      // A star of infinite magnitude (nothing came back) leaves a gap.
-      plot.point({time_of(writer.result, record->key), std::isfinite(e) ? y : std::nan(""), e});
-    }
-    plot.end_data();
-    const std::string colour = std::string("linecolor '") + kColours[b % std::size(kColours)] + "'";
-    command += (b ? ", $" : "$") + data + " using 1:2:3 with yerrorbars pointtype 7 pointsize 0.5 linewidth 1 " +
-               colour + " notitle, $" + data + " using 1:2 with lines linewidth 1.2 " + colour +
-               (bands.size() > 1 ? " title " + gnuplot_text(band_label(*bands[b].front())) : " notitle");
-  }
-  if (bands.size() > 1) plot.legend_beside();
-  plot.line("set title " + gnuplot_text(writer.title("spectrometer", bands.front().front()->key) + ": light curve") +
-            " font ',18'");
-  plot.line(
-      "set xlabel 'time (s)'; set autoscale xfix; set offsets 0,0,graph 0.05,graph 0.05; set tmargin at screen 0.92");
-  plot.line(magnitudes ? "set ylabel 'apparent AB magnitude (brighter is up)'; set yrange [] reverse"
-                       : "set ylabel 'A  (m² sr⁻¹)'");
-  plot.line(command);
-  writer.draw(plot, name);
 }
 
 void spectrum_picture(Writer& writer, const Group& group, const std::string& stem) {
@@ -169,15 +82,9 @@ void write_spectrometer(Writer& writer) {
     const bool moving = group.back()->key.orientation != key.orientation;
     const std::string spectrum = writer.stem("spectrum", key);
     spectrum_table(writer, group, spectrum, moving);
-    if (!moving) {
-      if (writer.options.plots) spectrum_picture(writer, group, spectrum);
-      continue;
-    }
-    const auto bands = by_band(group);
-    const std::string lightcurve = writer.stem("lightcurve", key);
-    lightcurve_table(writer, bands, lightcurve);
-    if (writer.options.plots) lightcurve_picture(writer, bands, lightcurve);
+    if (!moving && writer.options.plots) spectrum_picture(writer, group, spectrum);
   }
+  for (const LightCurve& curve : light_curves(writer)) write_light_curve(writer, curve);
 }
 
 Json spectrometer_entry(const SpectrometerResult& record) {
@@ -191,6 +98,7 @@ Json spectrometer_entry(const SpectrometerResult& record) {
           {"received_W_m2", record.received_W_m2},
           {"received_standard_error", record.received_W_m2_standard_error},
           {"magnitude_AB", record.magnitude_AB},
+          {"magnitude_Vega", record.magnitude_Vega},
           {"magnitude_standard_error", record.magnitude_standard_error},
           {"phase_angle_deg", record.phase_angle_rad * 180.0 / constants::kPi}};
 }
@@ -207,17 +115,17 @@ void spectrometer_totals(const Result& result, std::vector<Total>* all) {
 void show_spectrometer(const Result& result, ResultText* text) {
   if (result.spectrometer.empty()) return;
   Columns table;
-  table.add({"spectrometer", "band (nm)", "A (m²/sr)", "received (W/m²)", "AB magnitude", "phase angle (°)"});
+  table.add({"spectrometer", "band", "A (m²/sr)", "received (W/m²)", "AB magnitude", "Vega", "phase angle (°)"});
   for (std::size_t i = 0; i < std::min(result.spectrometer.size(), kMostRows); ++i) {
     const auto& s = result.spectrometer[i];
     ResultKey key = s.key;
     key.band.clear();
     const std::string magnitude = format_with_error(s.magnitude_AB, s.magnitude_standard_error);
     const bool received = s.received_W_m2 > 0.0;
-    table.add({record_name(key, result), fmt::format("{:g}-{:g}", s.band.low_nm, s.band.high_nm),
-               scaled(s.intensity_m2_per_sr, 1.0),
+    table.add({record_name(key, result), band_label(s), scaled(s.intensity_m2_per_sr, 1.0),
                received ? format_with_error(s.received_W_m2, s.received_W_m2_standard_error) : "n/a (no range)",
-               magnitude, fmt::format("{:.4g}", s.phase_angle_rad * constants::kDegrees)});
+               magnitude, std::isfinite(s.magnitude_Vega) ? rounded(s.magnitude_Vega, 6) : "n/a",
+               fmt::format("{:.4g}", s.phase_angle_rad * constants::kDegrees)});
   }
   text->tables += "\n" + table.text("  ") + more_rows(result.spectrometer.size());
   for (const auto& s : result.spectrometer)

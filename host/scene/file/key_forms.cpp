@@ -40,12 +40,18 @@ Band curve_band(TomlTable& t, const std::string& key, std::string name) {
   return make_band(name, std::move(curve));
 }
 
-/// { name, low_nm, high_nm } or { name, file }.
+/// { name, low_nm, high_nm }, { name, file } or { name, filter }.
 Band table_band(TomlTable b) {
-  b.know({"low_nm", "high_nm", "file"});
+  b.know({"low_nm", "high_nm", "file", "filter"});
   const std::string given = b.name("name", "");
   Band band;
-  if (b.has("file")) {
+  if (b.has("filter")) {
+    for (const char* key : {"low_nm", "high_nm", "file"}) {
+      if (b.has(key)) b.fail(key, "given beside filter, which has its own curve");
+    }
+    band = photometric_band(b.choice("filter", photometric_bands()));
+    if (!given.empty()) band.name = given;
+  } else if (b.has("file")) {
     for (const char* key : {"low_nm", "high_nm"}) {
       if (b.has(key)) b.fail(key, "given beside file; the curve has its own ends");
     }
@@ -64,6 +70,14 @@ Band table_band(TomlTable b) {
 Band read_band(TomlTable& t, const toml::node& node) {
   if (const toml::table* named = node.as_table()) return table_band(TomlTable(*named, "source.bands", t.scene_file()));
   if (node.is_string()) {
+    const std::string word = **node.as_string();
+    const std::vector<std::string>& known = photometric_bands();
+    if (std::find(known.begin(), known.end(), word) != known.end()) return photometric_band(word);
+    if (word.find('.') == std::string::npos) {
+      t.fail_at(node.source(),
+                fmt::format("source.bands: expected a filter's name ({}) or the file of a curve, found {}",
+                            fmt::join(known, ", "), found(node)));
+    }
     // A table of one entry, so that files are found and faults told in one place.
     toml::table one;
     one.insert("bands", *node.as_string());
@@ -77,7 +91,8 @@ Band read_band(TomlTable& t, const toml::node& node) {
   }
   const toml::array* pair = node.as_array();
   if (pair == nullptr || pair->size() != 2) {
-    t.fail_at(node.source(), "source.bands: expected [low_nm, high_nm] or the file of a curve, found " + found(node));
+    t.fail_at(node.source(),
+              "source.bands: expected [low_nm, high_nm], a filter's name or the file of a curve, found " + found(node));
   }
   const double low = t.number_of(*pair->get(0), "bands", kWavelength);
   const double high = t.number_of(*pair->get(1), "bands", kWavelength);
@@ -149,6 +164,11 @@ std::string bands_text(const Source& s) {
 }
 
 void read_source_spectrum(TomlTable& t, const std::string& key, Source* s) {
+  const toml::node& value = *t.node(key);
+  if (value.is_string() && **value.as_string() == "solar") {
+    s->spectrum = solar_spectrum();
+    return;
+  }
   s->spectrum = read_spectrum(t.file(key), {{"irradiance", "spectral_irradiance"}, "W_m2_nm", "value"}, 0.0, 1e300);
 }
 
@@ -157,7 +177,10 @@ void check_source_spectrum(const std::string& where, const Source& s) {
 }
 
 std::string source_spectrum_text(const Source& s) {
-  return s.spectrum ? "of " + count_text(s.spectrum->value.size(), "point") : "";
+  if (!s.spectrum) return "";
+  const Spectrum& solar = solar_spectrum();
+  const bool own = s.spectrum->wavelength_nm == solar.wavelength_nm && s.spectrum->value == solar.value;
+  return own ? "solar" : "of " + count_text(s.spectrum->value.size(), "point");
 }
 
 // ---- observer
@@ -183,6 +206,28 @@ std::string observer_direction_text(const Observer& o) {
   if (o.monostatic) return "source";
   if (o.toward != Toward::fixed) return o.toward == Toward::station ? "station" : "";
   return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", o.direction.x, o.direction.y, o.direction.z);
+}
+
+constexpr Range kExtinction{0.0, 100.0, true, true};
+
+void read_extinction(TomlTable& t, const std::string& key, Observer* o) {
+  if (!t.node(key)->is_table()) {
+    o->extinction_mag[""] = t.number(key, kExtinction);
+    return;
+  }
+  std::optional<TomlTable> bands = t.table(key);
+  for (const std::string& band : bands->keys()) o->extinction_mag[band] = bands->number(band, kExtinction);
+}
+
+void check_extinction(const std::string& where, const Observer& o) {
+  for (const auto& entry : o.extinction_mag) check_number(where + ".extinction_mag", entry.second, kExtinction);
+}
+
+std::string extinction_text(const Observer& o) {
+  std::string text;
+  for (const auto& [band, mag] : o.extinction_mag)
+    text += fmt::format("{}{}{:.6g}", text.empty() ? "" : ", ", band.empty() ? "" : band + " ", mag);
+  return text;
 }
 
 // ---- motion
@@ -287,6 +332,7 @@ namespace forms {
 const KeyForm<Source> source_bands{read_bands, check_bands, bands_text};
 const KeyForm<Source> source_spectrum{read_source_spectrum, check_source_spectrum, source_spectrum_text};
 const KeyForm<Observer> observer_direction{read_observer_direction, check_observer_direction, observer_direction_text};
+const KeyForm<Observer> observer_extinction{read_extinction, check_extinction, extinction_text};
 const KeyForm<Motion> motion_attitudes{read_motion_attitudes, check_motion_attitudes, attitudes_text};
 const KeyForm<Motion> motion_table_start{read_table_start, check_table_start, table_start_text};
 const KeyForm<Motion> motion_table_stop{read_table_stop, check_table_stop, table_stop_text};

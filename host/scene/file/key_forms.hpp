@@ -8,7 +8,8 @@
 namespace clray::forms {
 
 extern const KeyForm<Source> source_direction, source_directions, source_frame, source_bands, source_spectrum;
-extern const KeyForm<Observer> observer_direction, observer_site, observer_ecef, observer_directions, observer_frame;
+extern const KeyForm<Observer> observer_direction, observer_site, observer_ecef, observer_directions, observer_frame,
+    observer_extinction;
 extern const KeyForm<Pass> pass_start, pass_start_mjd, pass_times, pass_stop, pass_stop_mjd, pass_ephemeris, pass_eop;
 extern const KeyForm<PassAttitude> attitude_file, attitude_attitudes, attitude_spin, attitude_offset;
 extern const KeyForm<Motion> motion_attitudes, motion_table_start, motion_table_stop;

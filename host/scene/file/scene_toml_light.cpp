@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The sections of a scene file about light and measurement: source, observers, motion, station, detectors, trace. Their
 // keys are the rows of keys.def. Rules about several keys of a section stand here.
+#include <algorithm>
 #include <set>
 #include <string>
 
@@ -8,13 +9,27 @@
 #include "scene/file/keys.hpp"
 #include "scene/motion.hpp"
 #include "scene/scene_parts.hpp"
+#include "scene/spectrum.hpp"
 
 namespace clray {
+
+namespace {
+
+/// Whether a sun is given filters by name and nothing about its light. It is then the Sun that the filters' magnitudes
+/// are known for.
+bool is_photometric_sun(TomlTable& t, const Source& s) {
+  if (s.kind != Source::Kind::sun || t.has("spectrum") || t.has("blackbody_K") || t.has("irradiance_W_m2"))
+    return false;
+  return std::any_of(s.bands.begin(), s.bands.end(), is_photometric);
+}
+
+}  // namespace
 
 void read_source(TomlTable& root, Scene* scene) {
   std::optional<TomlTable> t = root.table("source");
   if (!t) return;
   read_keys(*t, &scene->source);
+  if (is_photometric_sun(*t, scene->source)) scene->source.spectrum = solar_spectrum();
   const std::string fault = source_fault(*scene);
   if (!fault.empty()) t->fail(scene->source.bands.empty() ? "spectrum" : "bands", fault);
 }
@@ -25,6 +40,7 @@ void read_observers(TomlTable& root, Scene* scene) {
     Observer o;
     read_keys(t, &o);
     if (o.monostatic) o.direction = scene->source.direction;
+    if (const std::string fault = extinction_fault(*scene, o); !fault.empty()) t.fail("extinction_mag", fault);
     if (!taken.insert(o.name).second) {
       if (o.name.empty())
         throw Error(ErrorCode::input, "observer.name: missing; several observers must be named", t.place());
