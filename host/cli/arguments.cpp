@@ -32,7 +32,8 @@ constexpr const char* kFooter =
 
 /// The options' texts, before they are parsed as values.
 struct Texts {
-  std::optional<std::string> rays, target, time, source, observer, bins, bounces, seed, unit, group, slice, sampler;
+  std::optional<std::string> rays, target, time, source, observer, bins, bounces, seed, unit, group, slice, sampler,
+      format;
 };
 
 /// "; did you mean --x?" for an option that comes near, else nothing.
@@ -133,6 +134,10 @@ void add_options(CLI::App& app, Arguments& a, Texts& t) {
               output);
   text_option(app, "--reference", a.reference, "FILE", "a summary.json or delay.csv to measure the true error against",
               output);
+  text_option(
+      app, "--format", t.format, "csv|netcdf",
+      "netcdf: also NetCDF files with units and errors (CF) of pulses, spectra, light curves, pressure and cubes",
+      output);
   app.add_flag("--no-plots", a.no_plots, wrapped("no plots (tables and pictures are still written)"))->group(output);
   app.add_flag("--quiet", a.quiet, wrapped("no progress and no closing table, only the device, the total and warnings"))
       ->group(output);
@@ -203,6 +208,11 @@ void parse_values(Arguments& a, const Texts& t) {
   } else if (t.observer) {
     a.scene_options.observer = parse_direction(*t.observer, "--observer");
   }
+  if (t.format && *t.format != "csv" && *t.format != "netcdf")
+    throw Error(ErrorCode::usage,
+                "'" + *t.format + "': expected csv or netcdf" + text::did_you_mean(*t.format, {"csv", "netcdf"}),
+                "--format");
+  a.netcdf = t.format == "netcdf";
   if (t.sampler) a.sobol = for_key("sampler", *t.sampler, *t.sampler, "--sampler") == "sobol";
 }
 

@@ -15,7 +15,7 @@ namespace clray::cli {
 /// What the user asked for.
 struct Arguments {
   std::string scene, device, list, out, reference, command;
-  bool explain = false, no_plots = false, quiet = false, dump_kernel = false, check = false;
+  bool explain = false, no_plots = false, netcdf = false, quiet = false, dump_kernel = false, check = false;
   SceneOptions scene_options;
 
   std::optional<std::uint64_t> rays, seed, slice_points;

@@ -143,6 +143,7 @@ int trace_and_write(const cli::Arguments& arguments, const Scene& scene, Warning
   result.seconds.total = seconds_since(start);
   WriteOptions options;
   options.plots = !arguments.no_plots;
+  options.netcdf = arguments.netcdf;
   options.command = arguments.command;
   options.reference_file = arguments.reference;
   std::vector<std::string> troubles;

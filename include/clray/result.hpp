@@ -229,6 +229,7 @@ struct MoreFiles {
 /// How to write results.
 struct WriteOptions {
   bool plots = true;
+  bool netcdf = false;                           ///< also NetCDF files, beside the tables and cubes that have one
   std::string command;                           ///< as typed, for the summary
   std::string reference_file;                    ///< a summary.json or delay.csv to measure the true error against
   std::vector<std::string>* warnings = nullptr;  ///< receives what went wrong without harm (no gnuplot, …)

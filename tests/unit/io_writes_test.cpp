@@ -9,6 +9,7 @@
 
 #include "clray/error.hpp"
 #include "io/fits_file.hpp"
+#include "io/netcdf_file.hpp"
 #include "io/picture_file.hpp"
 #include "io/table_file.hpp"
 #include "unit/io_support.hpp"
@@ -62,6 +63,16 @@ std::vector<Kind> kinds() {
              file.image("", "", {{64, "X", "m", 1.0, 0.0, 1.0}, {48, "Y", "m", 1.0, 0.0, 1.0}},
                         std::vector<double>(64 * 48, 1.5));
              file.table("T", {{"A", "", std::vector<double>(100, 2.5), {}}});
+             file.close();
+           }},
+          {"nc",
+           [](const std::string& path) {
+             io::NetcdfFile file(path, "numbers");
+             file.dimension("x", 64);
+             file.dimension("y", 48);
+             file.with_error({"v", {"y", "x"}, "m", "a length", std::vector<double>(64 * 48, 1.5)},
+                             std::vector<double>(64 * 48, 0.25));
+             file.texts("words", "y", "words", std::vector<std::string>(48, "word"));
              file.close();
            }},
           {"csv", [](const std::string& path) {

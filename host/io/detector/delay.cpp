@@ -10,6 +10,7 @@
 #include "io/detector/room.hpp"
 #include "io/detector/words.hpp"
 #include "io/fits_file.hpp"
+#include "io/netcdf/records.hpp"
 #include "io/summary_entries.hpp"
 #include "text/text.hpp"
 
@@ -133,6 +134,7 @@ void write_delay(Writer& writer) {
       totals_table(writer, group, stem);
       if (same_bins(group)) delay_fits(writer, group, stem);
     }
+    if (writer.options.netcdf && same_bins(group)) delay_netcdf(writer, group, stem);
     if (!writer.options.plots) continue;
     if (group.size() > 1 && same_bins(group)) {
       delay_map_picture(writer, group, stem);

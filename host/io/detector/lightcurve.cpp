@@ -13,6 +13,7 @@
 #include "clray/constants.hpp"
 #include "ephemeris/epoch.hpp"
 #include "io/detector/lightcurve_picture.hpp"
+#include "io/netcdf/records.hpp"
 #include "text/text.hpp"
 
 namespace clray::io {
@@ -31,14 +32,6 @@ std::vector<std::vector<const SpectrometerResult*>> by_band(const std::vector<co
     bands[entry->second].push_back(record);
   }
   return bands;
-}
-
-/// Index of a record's observer in the scene; 0 where there is only one.
-std::size_t observer_of(const Scene& scene, const ResultKey& key) {
-  for (std::size_t i = 0; i < scene.observers.size(); ++i) {
-    if (scene.observers[i].name == key.observer) return i;
-  }
-  return 0;
 }
 
 /// The site from which an observer looks at an instant, or null: its own, or the station that shines.
@@ -176,6 +169,13 @@ void table_row(TableFile& table, const Writer& writer, const BandCurve& band, co
 
 }  // namespace
 
+std::size_t observer_of(const Scene& scene, const ResultKey& key) {
+  for (std::size_t i = 0; i < scene.observers.size(); ++i) {
+    if (scene.observers[i].name == key.observer) return i;
+  }
+  return 0;
+}
+
 std::string band_name(const SpectrometerResult& record) {
   const std::string& name = record.key.band.empty() ? record.band.name : record.key.band;
   return !name.empty() ? name : rounded(record.band.low_nm, 6) + "-" + rounded(record.band.high_nm, 6);
@@ -248,6 +248,7 @@ void write_light_curve(Writer& writer, const LightCurve& curve) {
     }
   }
   table.close();
+  if (writer.options.netcdf && most > 0) light_curve_netcdf(writer, curve, stem);
   if (writer.options.plots && most > 0) light_curve_picture(writer, curve, stem);
 }
 

@@ -51,6 +51,9 @@ std::vector<LightCurve> light_curves(const Writer& writer);
 /// lightcurve.csv and .png.
 void write_light_curve(Writer& writer, const LightCurve& curve);
 
+/// Index of a record's observer in the scene; 0 where there is only one.
+std::size_t observer_of(const Scene& scene, const ResultKey& key);
+
 /// A band's name as files show it, and with nm behind it if it is a range of wavelengths.
 std::string band_name(const SpectrometerResult& record);
 std::string band_label(const SpectrometerResult& record);

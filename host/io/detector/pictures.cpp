@@ -8,6 +8,7 @@
 #include "io/colour.hpp"
 #include "io/detector/room.hpp"
 #include "io/fits_file.hpp"
+#include "io/netcdf/records.hpp"
 #include "io/picture_file.hpp"
 #include "io/summary_entries.hpp"
 #include "text/file_names.hpp"
@@ -263,6 +264,7 @@ void write_cube(Writer& writer, const Group& group, std::size_t i) {
   }
   file.table("BANDS", {name, low, high, source});
   file.close();
+  if (writer.options.netcdf) cube_netcdf(writer, image, frame_stem(writer.stem("hyperspectral", image.key), group, i));
 }
 
 void write_images(Writer& writer) {

@@ -12,6 +12,7 @@
 #include "clray/constants.hpp"
 #include "io/detector/room.hpp"
 #include "io/detector/words.hpp"
+#include "io/netcdf/records.hpp"
 #include "io/summary_entries.hpp"
 #include "text/text.hpp"
 
@@ -191,11 +192,23 @@ bool one_instant(const Writer& writer, const Group& group) {
                      [&](const auto* record) { return time_of(writer.result, record->key) == first; });
 }
 
+/// Whole grids are written by their angles.
+void grid_netcdf(Writer& writer, const Group& group, const std::string& stem) {
+  const GridSteps grid = grid_of(writer, group.front()->key);
+  std::vector<double> azimuths, elevations;
+  if (static_cast<double>(group.size()) == grid.azimuths * (grid.elevations - 2.0) + 2.0 && grid.azimuths > 0.0) {
+    for (double a = 0.0; a < grid.azimuths; ++a) azimuths.push_back(360.0 * a / grid.azimuths);
+    for (double e = 0.0; e < grid.elevations; ++e) elevations.push_back(-90.0 + 180.0 * e / (grid.elevations - 1.0));
+  }
+  pressure_netcdf(writer, group, stem, azimuths, elevations);
+}
+
 void write_pressure(Writer& writer) {
   for (const auto& group : groups_by_band(writer.result.pressure)) {
     const ResultKey& key = group.front()->key;
     const std::string stem = writer.stem("pressure", key, true);
     pressure_table(writer, group, stem);
+    if (writer.options.netcdf) grid_netcdf(writer, group, stem);
     if (!writer.options.plots || group.size() < 2) continue;
     if (one_instant(writer, group)) {
       map_picture(writer, group, stem);

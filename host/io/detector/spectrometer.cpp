@@ -10,6 +10,7 @@
 #include "io/detector/lightcurve.hpp"
 #include "io/detector/room.hpp"
 #include "io/detector/words.hpp"
+#include "io/netcdf/records.hpp"
 #include "io/summary_entries.hpp"
 #include "text/text.hpp"
 
@@ -82,6 +83,7 @@ void write_spectrometer(Writer& writer) {
     const bool moving = group.back()->key.orientation != key.orientation;
     const std::string spectrum = writer.stem("spectrum", key);
     spectrum_table(writer, group, spectrum, moving);
+    if (writer.options.netcdf) spectrum_netcdf(writer, group, spectrum);
     if (!moving && writer.options.plots) spectrum_picture(writer, group, spectrum);
   }
   for (const LightCurve& curve : light_curves(writer)) write_light_curve(writer, curve);
