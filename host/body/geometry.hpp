@@ -43,7 +43,7 @@ struct Geometry {
   std::uint32_t stack_needed = 1;  ///< of the deepest tree
   bool single = false;             ///< one component, and no faces in one place
   bool shared_planes = false;      ///< faces overlap in one plane
-  std::uint64_t conflicts = 0;     ///< pairs of such faces that look the same way with different materials
+  std::uint64_t conflicts = 0;     ///< such faces that overlap one of another material which looks the same way
   MeshReport report;
   Point centre{{0, 0, 0}};  ///< of the bounding sphere over all hinge angles
   double radius = 0.0;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // See shared_planes.hpp. Planes are sorted by a generic combination of their coefficients, and only neighbours in that
-// order are compared. Within a plane, outlines are swept along one axis. Two of them overlap where no edge of either
-// separates them.
+// order are compared. Within a plane, plane_overlaps.hpp finds the faces that overlap.
 #include "body/shared_planes.hpp"
 
 #include <algorithm>
@@ -16,8 +15,6 @@ using Point3 = std::array<double, 3>;
 
 constexpr double kWindow = 1e-9;        // of sort keys: far above the rounding of a sound face's normal
 constexpr double kSame = 32 * 0x1p-52;  // of the coordinates, for a corner to lie on a plane
-constexpr double kTouch = 1e-12;        // of the sizes: outlines that overlap by less only touch
-constexpr int kMostStripes = 1024;
 
 /// A direction that no plane of a model is likely to contain: its components have no simple ratio.
 constexpr double kGeneric[4] = {0.5377, 0.6803, 0.4981, 0.2719};
@@ -62,57 +59,6 @@ Plane plane_of(const FaceOutline& outline) {
 bool lies_on(const FaceOutline& face, const Plane& plane, double tolerance) {
   return std::all_of(face.corners.begin(), face.corners.end(),
                      [&](const Point3& x) { return std::fabs(dot(plane.normal, x) - plane.offset) <= tolerance; });
-}
-
-/// A face's outline within its plane, counter-clockwise.
-struct Flat {
-  std::vector<std::array<double, 2>> corners;
-  std::array<double, 2> low{{1e300, 1e300}}, high{{-1e300, -1e300}};
-};
-
-/// Drops the coordinate along which the normal is largest. The others keep their bits, so shared edges stay shared.
-Flat flatten(const FaceOutline& outline, const Point3& normal) {
-  int drop = 0;
-  for (int i = 1; i < 3; ++i) {
-    if (std::fabs(normal[i]) > std::fabs(normal[drop])) drop = i;
-  }
-  Flat flat;
-  double area = 0.0;
-  for (const Point3& x : outline.corners) flat.corners.push_back({{x[(drop + 1) % 3], x[(drop + 2) % 3]}});
-  const std::size_t n = flat.corners.size();
-  for (std::size_t k = 0; k < n; ++k) {
-    const auto &a = flat.corners[k], &b = flat.corners[(k + 1) % n], &o = flat.corners[0];
-    area += (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0]);
-    for (int i = 0; i < 2; ++i) {
-      flat.low[i] = std::min(flat.low[i], a[i]);
-      flat.high[i] = std::max(flat.high[i], a[i]);
-    }
-  }
-  if (area < 0.0) std::reverse(flat.corners.begin(), flat.corners.end());
-  return flat;
-}
-
-/// Whether an edge of `a` has all of `b` on its outer side.
-bool edge_separates(const Flat& a, const Flat& b) {
-  const std::size_t n = a.corners.size();
-  for (std::size_t k = 0; k < n; ++k) {
-    const auto &p = a.corners[k], &q = a.corners[(k + 1) % n];
-    const double x = q[0] - p[0], y = q[1] - p[1], length = std::fabs(x) + std::fabs(y);
-    const bool outside = std::all_of(b.corners.begin(), b.corners.end(), [&](const std::array<double, 2>& c) {
-      const double u = c[0] - p[0], v = c[1] - p[1];
-      return x * v - y * u <= kTouch * length * (std::fabs(u) + std::fabs(v) + length);
-    });
-    if (outside) return true;
-  }
-  return false;
-}
-
-bool within_hole(const FaceOutline& inner, const FaceOutline& outer) {
-  if (outer.hole_radius <= 0.0) return false;
-  return std::all_of(inner.corners.begin(), inner.corners.end(), [&](const Point3& x) {
-    const Point3 d{{x[0] - outer.centre[0], x[1] - outer.centre[1], x[2] - outer.centre[2]}};
-    return std::sqrt(dot(d, d)) <= outer.hole_radius * (1.0 + kTouch);
-  });
 }
 
 class Finder {
@@ -200,55 +146,19 @@ class Finder {
   /// Finds overlaps among the faces of one plane, whose coefficients are those of its first face.
   void sweep(const std::vector<std::uint32_t>& members) {
     const Plane plane = plane_of(outline(members.front()));
-    std::vector<FaceOutline> outlines;
-    std::vector<Flat> flats;
-    std::vector<char> front, shared(members.size(), 0);
+    std::vector<PlaneFace> faces;
     for (const std::uint32_t f : members) {
-      outlines.push_back(outline(f));
-      flats.push_back(flatten(outlines.back(), plane.normal));
-      front.push_back(plane_of(outlines.back()).front);
+      FaceOutline own = outline(f);
+      const bool front = plane_of(own).front;
+      faces.push_back({std::move(own), front, faces_[f].material});
     }
-    std::vector<std::uint32_t> order(members.size());
-    std::iota(order.begin(), order.end(), 0u);
-    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-      return flats[a].low[0] != flats[b].low[0] ? flats[a].low[0] < flats[b].low[0] : a < b;
-    });
-    double low = 1e300, high = -1e300;
-    for (const Flat& flat : flats) {
-      low = std::min(low, flat.low[1]);
-      high = std::max(high, flat.high[1]);
-    }
-    const int stripes = std::clamp(static_cast<int>(std::sqrt(static_cast<double>(members.size()))), 1, kMostStripes);
-    const auto stripe = [&](double y) {
-      return std::clamp(static_cast<int>((y - low) / std::max(high - low, 1e-300) * stripes), 0, stripes - 1);
-    };
-    std::vector<std::vector<std::uint32_t>> open(static_cast<std::size_t>(stripes));
-    for (const std::uint32_t m : order) {
-      const int first = stripe(flats[m].low[1]), last = stripe(flats[m].high[1]);
-      for (int s = first; s <= last; ++s) {
-        auto& list = open[static_cast<std::size_t>(s)];
-        list.erase(std::remove_if(list.begin(), list.end(),
-                                  [&](std::uint32_t k) { return flats[k].high[0] <= flats[m].low[0]; }),
-                   list.end());
-        for (const std::uint32_t k : list) {
-          // A pair is compared in the first stripe that has both.
-          if (s != std::max(first, stripe(flats[k].low[1])) || !overlap(flats[k], flats[m], outlines[k], outlines[m]))
-            continue;
-          shared[k] = shared[m] = 1;
-          if (front[k] == front[m] && faces_[members[k]].material != faces_[members[m]].material) ++out_.conflicts;
-        }
-        list.push_back(m);
-      }
-    }
-    record(members, plane, front, shared);
+    const PlaneOverlaps found = find_overlaps(faces, plane.normal);
+    out_.conflicts += static_cast<std::uint64_t>(std::count(found.conflicting.begin(), found.conflicting.end(), 1));
+    out_.compared += found.compared;
+    record(members, plane, faces, found.shared);
   }
 
-  static bool overlap(const Flat& a, const Flat& b, const FaceOutline& face_a, const FaceOutline& face_b) {
-    return !edge_separates(a, b) && !edge_separates(b, a) && !within_hole(face_a, face_b) &&
-           !within_hole(face_b, face_a);
-  }
-
-  void record(const std::vector<std::uint32_t>& members, const Plane& plane, const std::vector<char>& front,
+  void record(const std::vector<std::uint32_t>& members, const Plane& plane, const std::vector<PlaneFace>& faces,
               const std::vector<char>& shared) {
     if (std::none_of(shared.begin(), shared.end(), [](char s) { return s != 0; })) return;
     ++number_;
@@ -260,7 +170,7 @@ class Finder {
       std::copy(plane.normal.begin(), plane.normal.end(), face.record.begin());
       face.record[CLRAY_PLANE_OFFSET] = plane.offset;
       face.record[CLRAY_PLANE_NUMBER] = number_;
-      face.record[CLRAY_PLANE_FACING] = front[m] ? 1.0 : -1.0;
+      face.record[CLRAY_PLANE_FACING] = faces[m].front ? 1.0 : -1.0;
       out_.faces.push_back(face);
     }
   }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "body/bvh.hpp"
+#include "body/plane_overlaps.hpp"
 #include "shared/abi.h"
 
 namespace clray {
@@ -22,13 +23,6 @@ struct FlatFace {
   std::uint32_t material = 0;
 };
 
-/// The outline of a face: a convex polygon, seen counter-clockwise from its front, less a round hole.
-struct FaceOutline {
-  std::vector<std::array<double, 3>> corners;
-  std::array<double, 3> centre{{0.0, 0.0, 0.0}};  ///< of the hole
-  double hole_radius = 0.0;                       ///< 0: no hole
-};
-
 /// What the device needs of one face that shares its plane: see CLRAY_PLANE_* in abi.h.
 struct SharedPlane {
   std::uint32_t primitive = 0, part = 0;
@@ -37,7 +31,8 @@ struct SharedPlane {
 
 struct SharedPlanes {
   std::vector<SharedPlane> faces;  ///< ascending primitive, then part
-  std::uint64_t conflicts = 0;     ///< overlapping pairs of different materials that look the same way
+  std::uint64_t conflicts = 0;     ///< faces that overlap one of another material which looks the same way
+  std::uint64_t compared = 0;      ///< pairs of faces whose outlines were compared
 };
 
 /// Gives the outlines of faces.

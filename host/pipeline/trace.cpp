@@ -109,8 +109,8 @@ Result trace(const Scene& scene, Device& device, const TraceHooks& hooks) {
   if (geometry.conflicts != 0)
     result.warnings.push_back(fmt::format(
         "faces of different materials overlap in one plane and look the same way ({}): the first in canonical "
-        "order is hit; remove one of each",
-        text::counted(geometry.conflicts, "pair")));
+        "order is hit; remove the others",
+        text::counted(geometry.conflicts, "face")));
   std::vector<std::string> early = std::move(result.warnings);
   add_warnings(scene, ending, lit, &result);
   result.warnings.insert(result.warnings.end(), early.begin(), early.end());
