@@ -174,7 +174,6 @@ int run(int argc, char** argv) {
   Warnings warnings;
   Scene scene = load_scene(arguments.scene, arguments.scene_options);
   cli::apply(arguments, scene);
-  check_scene(scene);
   if (const std::string fault = size_fault(scene, ""); !fault.empty()) throw Error(ErrorCode::input, fault);
   if (arguments.check) {
     print(describe_scene(scene) + describe_pass(scene));  // the warnings, too

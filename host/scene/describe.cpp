@@ -99,9 +99,13 @@ std::string place_text(const Component& c) {
   return text;
 }
 
+/// A scene may have a million materials or components; a person reads the first of them.
+constexpr std::size_t kMostLines = 100, kMostWords = 20;
+
 std::string component_materials(const Scene& scene, const Component& c) {
   std::string text;
   for (std::size_t i = 0; i < c.materials.size(); ++i) {
+    if (i == kMostWords) return text + fmt::format(" and {} more", c.materials.size() - i);
     const std::string& name = scene.materials[c.materials[i]].name;
     const std::string slot = c.mesh && !c.mesh->material_slots[i].empty() ? c.mesh->material_slots[i] + " = " : "";
     text += (text.empty() ? "" : ", ") + (slot == name + " = " ? "" : slot) + name;
@@ -109,26 +113,40 @@ std::string component_materials(const Scene& scene, const Component& c) {
   return text;
 }
 
+/// Calls `add` for the first entries of a list. Returns words that count the others, if any.
+template <typename List, typename Add>
+std::string add_first(const List& list, const Add& add) {
+  for (std::size_t i = 0; i < std::min(list.size(), kMostLines); ++i) add(list[i]);
+  return list.size() > kMostLines ? fmt::format("and {} more", list.size() - kMostLines) : "";
+}
+
+std::string section_text(const char* title, std::size_t count, const Columns& lines, const std::string& rest) {
+  return fmt::format("{} ({})\n{}{}", title, count, lines.text("  "), rest.empty() ? "" : "  " + rest + "\n");
+}
+
 std::string body_text(const Scene& scene) {
   Columns components, materials;
-  for (const Component& c : scene.components) {
+  const std::string more_components = add_first(scene.components, [&](const Component& c) {
     const TableRow& row = table_row("shape", c.shape);
     const std::string what = c.mesh ? mesh_text(*c.mesh) : row_text(row, c.parameters);
     components.add({c.name, c.shape, component_materials(scene, c), what + place_text(c)});
-  }
-  for (const Material& m : scene.materials) materials.add({m.name, m.model, material_text(m)});
-  std::string text = fmt::format("components ({})\n{}", scene.components.size(), components.text("  "));
-  text += fmt::format("materials ({})\n{}", scene.materials.size(), materials.text("  "));
+  });
+  const std::string more_materials = add_first(scene.materials, [&](const Material& m) {
+    materials.add({m.name, m.model, material_text(m)});
+  });
+  const std::string text = section_text("components", scene.components.size(), components, more_components) +
+                           section_text("materials", scene.materials.size(), materials, more_materials);
   if (scene.variants.empty()) return text;
   Columns variants;
-  for (const Variant& v : scene.variants) {
+  const std::string more_variants = add_first(scene.variants, [&](const Variant& v) {
     std::string name = v.name;
-    for (const Material& m : v.materials) {
+    const std::string more = add_first(v.materials, [&](const Material& m) {
       variants.add({name, m.name, m.model, material_text(m)});
       name.clear();
-    }
-  }
-  return text + fmt::format("variants ({})\n{}", scene.variants.size(), variants.text("  "));
+    });
+    if (!more.empty()) variants.add({"", more});
+  });
+  return text + section_text("variants", scene.variants.size(), variants, more_variants);
 }
 
 std::string motion_text(const Motion& m) {
@@ -142,7 +160,10 @@ std::string describe_scene(const Scene& scene) {
   Columns lines;
   if (scene.reference_point != Vec3(0.0)) lines.add({"reference", vector_text(scene.reference_point) + " m"});
   lines.add({"source", key_text(scene.source)});
-  for (const Observer& o : scene.observers) lines.add({"observer", key_text(o)});
+  const std::string more_observers = add_first(scene.observers, [&](const Observer& o) {
+    lines.add({"observer", key_text(o)});
+  });
+  if (!more_observers.empty()) lines.add({"", more_observers});
   if (scene.motion) lines.add({"motion", motion_text(*scene.motion)});
   if (scene.pass) {
     lines.add({"pass", key_text(*scene.pass)});

@@ -70,25 +70,25 @@ std::string reach_fault(const Reach& reach) {
 }
 
 void check_row(const std::string& where, const TableRow& row, const std::map<std::string, double>& parameters) {
-  std::vector<std::string> known;
-  for (const TableKey& key : row.keys) known.push_back(key.name);
   for (const auto& [name, value] : parameters) {
     const TableKey* key = find_key(row, name);
     if (key == nullptr) {
+      std::vector<std::string> known;
+      for (const TableKey& each : row.keys) known.push_back(each.name);
       fail(where, fmt::format("unknown key '{}' of '{}'{}", name, row.name, did_you_mean(name, known)));
     }
+    if (key_accepts(*key, value)) continue;
     std::string expected;
-    if (!key_accepts(*key, value, &expected)) {
-      fail(where + "." + name, fmt::format("expected {}, found {}", expected, value));
-    }
+    key_accepts(*key, value, &expected);
+    fail(where + "." + name, fmt::format("expected {}, found {}", expected, value));
   }
 }
 
-const TableRow& row_of(const std::string& where, const std::string& kind, const std::string& name) {
+const TableRow& row_of(const std::string& where, const char* member, const std::string& kind, const std::string& name) {
   const int index = table_index(kind, name);
   if (index < 0) {
-    fail(where, fmt::format("expected one of {}, found \"{}\"{}", fmt::join(row_names(kind), ", "), name,
-                            did_you_mean(name, row_names(kind))));
+    fail(where + member, fmt::format("expected one of {}, found \"{}\"{}", fmt::join(row_names(kind), ", "), name,
+                                     did_you_mean(name, row_names(kind))));
   }
   return table(kind)[static_cast<std::size_t>(index)];
 }
@@ -110,14 +110,16 @@ void check_table(const std::string& where, const BrdfTable& t) {
   for (const double value : t.value) check_number(where, value, kNotNegative);
 }
 
+// A scene may hold a million materials, so texts are made for a complaint only.
 void check_material(const std::string& where, const Material& m) {
-  const TableRow& row = row_of(where + ".model", "brdf", m.model);
+  const TableRow& row = row_of(where, ".model", "brdf", m.model);
   check_row(where, row, m.parameters);
-  check_number(where + ".infrared_reflectance", m.infrared_reflectance, kShare);
+  if (const std::string fault = number_fault(m.infrared_reflectance, kShare); !fault.empty())
+    fail(where + ".infrared_reflectance", fault);
   for (const auto& [name, spectrum] : m.spectra) {
     const TableKey* key = find_key(row, name);
     if (key == nullptr) fail(where, fmt::format("unknown key '{}' of '{}'", name, row.name));
-    check_spectrum(where + "." + name, spectrum, key);
+    if (const std::string fault = spectrum_fault(spectrum, key); !fault.empty()) fail(where + "." + name, fault);
   }
   if (!row.file && m.table) fail(where + ".table", "the model '" + row.name + "' has none");
   if (row.file) {
@@ -150,7 +152,7 @@ void check_mesh(const std::string& where, const Mesh* mesh, double scale) {
 
 /// Returns how far from the origin the component may reach, m.
 double check_component(const std::string& where, const Scene& scene, const Component& c) {
-  const TableRow& row = row_of(where + ".shape", "shape", c.shape);
+  const TableRow& row = row_of(where, ".shape", "shape", c.shape);
   check_row(where, row, c.parameters);
   check_number(where + ".transform.scale", c.transform.scale, kPositive);
   const std::string fault = shape_fault(c);
@@ -200,6 +202,7 @@ void check_names(const std::string& where, const List& list) {
     return list[i].name;
   };
   text::NameIndex names;
+  names.reserve(list.size());
   for (std::size_t i = 0; i < list.size(); ++i) {
     if (!names.insert(name_at(i), static_cast<std::uint32_t>(i), name_at).second)
       fail(where, "a second one of the name \"" + std::string(name_at(i)) + "\"");
@@ -290,7 +293,7 @@ void check_scene(const Scene& scene) {
   check_names("variants", scene.variants);
   check_names("source.bands", scene.source.bands);
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {
-    check_material(fmt::format("materials[{}]", i), scene.materials[i]);
+    check_material("materials[" + std::to_string(i) + "]", scene.materials[i]);
   }
   double body_m = 0.0;
   for (std::size_t i = 0; i < scene.components.size(); ++i) {
@@ -319,7 +322,7 @@ void check_scene(const Scene& scene) {
   }
   for (std::size_t i = 0; i < scene.detectors.size(); ++i) {
     const std::string where = fmt::format("detectors[{}]", i);
-    check_row(where, row_of(where + ".kind", "detector", scene.detectors[i].kind), scene.detectors[i].parameters);
+    check_row(where, row_of(where, ".kind", "detector", scene.detectors[i].kind), scene.detectors[i].parameters);
     const std::string fault = detector_fault(scene.detectors[i]);
     if (!fault.empty()) fail(where, fault);
   }

@@ -34,6 +34,31 @@ TEST_CASE("sizes: those of runs, to a factor of two") {
   CHECK(twenty == doctest::Approx(2.0 * ten).epsilon(1e-12));
 }
 
+TEST_CASE("sizes: a scene of many materials, components and observers is described by the first hundred of each") {
+  const SceneFolder f;
+  std::string library, mesh = "mtllib many.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n", more;
+  for (int i = 0; i < 250; ++i) {
+    const std::string n = std::to_string(i);
+    library += "newmtl paint" + n + "\nKd 0.5 0.25 0.125\n";
+    mesh += "usemtl paint" + n + "\nf 1 2 3\n";
+    more += "[[observer]]\nname = \"o" + n + "\"\n[[component]]\nshape = \"sphere\"\nname = \"c" + n + "\"\n";
+  }
+  f.write("many.mtl", library);
+  f.write("many.obj", mesh);
+  const std::string text = describe_scene(f.load("[[component]]\nfile = \"many.obj\"\n" + more));
+  const auto count = [&](const std::string& words) {
+    std::size_t n = 0;
+    for (std::size_t at = text.find(words); at != text.npos; at = text.find(words, at + 1)) ++n;
+    return n;
+  };
+  CHECK(count("\n  paint") == 100);
+  CHECK(count("paint19 and 230 more  250 triangles") == 1);
+  CHECK(count("\nobserver ") == 100);
+  CHECK(count("  sphere  default") == 99);
+  CHECK(count("\n  and 151 more\n") == 2);  // components, and materials with the default
+  CHECK(count("  and 150 more\n") == 1);
+}
+
 TEST_CASE("sizes: what no machine has is refused with the number; no product wraps") {
   const SceneFolder f;
   const Scene huge = f.load(kBall +

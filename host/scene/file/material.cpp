@@ -143,9 +143,16 @@ std::uint32_t MaterialBook::add_if_missing(Material material) {
 
 // Adds a mesh file's own material. An equal one is shared; if a different one has its name, it is renamed.
 std::uint32_t MaterialBook::add_from_file(Material material, const std::string& component) {
-  const int there = find(material.name);
-  if (there < 0) return add(std::move(material));
-  if (same(scene_->materials[static_cast<std::size_t>(there)], material)) return static_cast<std::uint32_t>(there);
+  std::vector<Material>& known = scene_->materials;
+  const auto next = static_cast<std::uint32_t>(known.size());
+  const auto [there, inserted] = place_.insert(material.name, next, [&](std::size_t i) -> std::string_view {
+    return i == next ? std::string_view(material.name) : std::string_view(known[i].name);
+  });
+  if (inserted) {
+    known.push_back(std::move(material));
+    return next;
+  }
+  if (same(known[there], material)) return there;
   material.name += " (" + component + ")";
   return add(std::move(material));
 }
@@ -156,15 +163,19 @@ bool MaterialBook::assign(Component* component, const std::map<std::string, std:
   const Mesh* mesh = component->mesh.get();
   const std::vector<std::string>& slots = mesh != nullptr ? mesh->material_slots : shape_slot;
   text::NameIndex in_file;
+  if (mesh != nullptr) in_file.reserve(mesh->file_materials.size());
   for (std::size_t i = 0; mesh != nullptr && i < mesh->file_materials.size(); ++i)
     in_file.insert(mesh->file_materials[i].name, static_cast<std::uint32_t>(i), names_of(mesh->file_materials));
   component->materials.clear();
   component->materials.reserve(slots.size());
+  const std::size_t most = scene_->materials.size() + slots.size();
+  if (most > 2 * scene_->materials.capacity()) scene_->materials.reserve(most);
+  place_.reserve(most);
   bool defaulted = false;
   for (const std::string& slot : slots) {
     const auto mapped = by_slot.find(slot);
     const std::string& wanted = mapped != by_slot.end() ? mapped->second : common;
-    const int named = find(wanted.empty() ? slot : wanted);
+    const int named = wanted.empty() && defined_ == 0 ? -1 : find(wanted.empty() ? slot : wanted);
     const bool own = !wanted.empty() || (named >= 0 && static_cast<std::size_t>(named) < defined_);
     if (own && named >= 0) {
       component->materials.push_back(static_cast<std::uint32_t>(named));

@@ -55,11 +55,15 @@ std::string unit_fault(const Vec3& v) {
   return fmt::format("expected a unit vector, found length {}", std::sqrt(square));
 }
 
-void check_number(const std::string& where, double value, const Range& r) {
+std::string number_fault(double value, const Range& r) {
   const bool low = r.low_included ? value >= r.low : value > r.low;
   const bool high = r.high_included ? value <= r.high : value < r.high;
-  if (std::isfinite(value) && low && high) return;
-  throw_fault(where, fmt::format("expected a number in {}, found {}", range_text(r), value));
+  if (std::isfinite(value) && low && high) return "";
+  return fmt::format("expected a number in {}, found {}", range_text(r), value);
+}
+
+void check_number(const std::string& where, double value, const Range& range) {
+  throw_fault(where, number_fault(value, range));
 }
 
 void check_vector(const std::string& where, const Vec3& v) {
@@ -79,19 +83,23 @@ void check_unit(const std::string& where, const Vec3& v) {
   throw_fault(where, unit_fault(v));
 }
 
-void check_spectrum(const std::string& where, const Spectrum& s, const TableKey* key) {
-  if (s.wavelength_nm.empty() || s.wavelength_nm.size() != s.value.size()) {
-    throw_fault(where, "expected one value per wavelength");
-  }
+std::string spectrum_fault(const Spectrum& s, const TableKey* key) {
+  if (s.wavelength_nm.empty() || s.wavelength_nm.size() != s.value.size()) return "expected one value per wavelength";
   for (std::size_t i = 0; i < s.value.size(); ++i) {
-    check_number(where, s.wavelength_nm[i], kPositive);
-    if (i > 0 && !(s.wavelength_nm[i] > s.wavelength_nm[i - 1])) throw_fault(where, "wavelengths must increase");
-    std::string expected;
-    if (key != nullptr && !key_accepts(*key, s.value[i], &expected)) {
-      throw_fault(where, fmt::format("expected {}, found {}", expected, s.value[i]));
-    }
-    if (key == nullptr) check_number(where, s.value[i], kNotNegative);
+    std::string fault = number_fault(s.wavelength_nm[i], kPositive);
+    if (!fault.empty()) return fault;
+    if (i > 0 && !(s.wavelength_nm[i] > s.wavelength_nm[i - 1])) return "wavelengths must increase";
+    if (key == nullptr) fault = number_fault(s.value[i], kNotNegative);
+    if (!fault.empty()) return fault;
+    if (key == nullptr || key_accepts(*key, s.value[i])) continue;
+    key_accepts(*key, s.value[i], &fault);
+    return fmt::format("expected {}, found {}", fault, s.value[i]);
   }
+  return "";
+}
+
+void check_spectrum(const std::string& where, const Spectrum& s) {
+  throw_fault(where, spectrum_fault(s));
 }
 
 void check_attitudes(const std::string& where, const std::vector<Attitude>& attitudes, const Range& time) {

@@ -35,6 +35,9 @@ Vec3 unit_vector(const Vec3& v);
 /// A vector of length 1.
 std::string unit_fault(const Vec3& v);
 
+/// A finite number in the range.
+std::string number_fault(double value, const Range& range);
+
 void check_number(const std::string& where, double value, const Range& range);
 void check_vector(const std::string& where, const Vec3& v);
 void check_unit(const std::string& where, const Vec3& v);
@@ -43,7 +46,8 @@ void check_angle(const std::string& where, double angle_rad);
 
 /// One value per wavelength, wavelengths positive and increasing; values that `key` accepts or, without one, that are
 /// not negative.
-void check_spectrum(const std::string& where, const Spectrum& spectrum, const TableKey* key = nullptr);
+std::string spectrum_fault(const Spectrum& spectrum, const TableKey* key = nullptr);
+void check_spectrum(const std::string& where, const Spectrum& spectrum);
 
 /// Times in `time`, increasing, and quaternions of length 1.
 void check_attitudes(const std::string& where, const std::vector<Attitude>& attitudes, const Range& time);

@@ -11,7 +11,6 @@
 #include "scene/mesh/mesh_readers.hpp"
 #include "scene/mesh/mesh_text.hpp"
 #include "text/input_file.hpp"
-#include "text/name_index.hpp"
 
 namespace clray {
 
@@ -34,9 +33,15 @@ struct MtlEntry {
 
 class MtlReader {
  public:
-  MtlReader(const std::string& path, const std::string& content) : path_(path), text_(content, path) {}
+  MtlReader(const std::string& path, const std::string& content) : path_(path), text_(content, path) {
+    const std::string_view key = "newmtl";
+    std::size_t count = 0;
+    for (std::size_t i = content.find(key); i != content.npos; i = content.find(key, i + key.size())) ++count;
+    entries_.reserve(count);
+    place_of_.reserve(count);
+  }
 
-  std::vector<Material> read(std::vector<std::string>& warnings) {
+  MaterialLibrary read(std::vector<std::string>& warnings) {
     while (text_.next_filled_line()) {
       const std::uint64_t line = text_.line();
       const std::string_view key = text_.word();
@@ -50,10 +55,12 @@ class MtlReader {
       text_.next_line();
     }
     finish();
-    std::vector<Material> materials;
-    for (const MtlEntry& entry : entries_) materials.push_back(to_material(entry));
+    MaterialLibrary library;
+    library.materials.reserve(entries_.size());
+    for (const MtlEntry& entry : entries_) library.materials.push_back(to_material(entry));
+    library.place_of = std::move(place_of_);
     warn(warnings);
-    return materials;
+    return library;
   }
 
  private:
@@ -207,7 +214,7 @@ class MtlReader {
 
 }  // namespace
 
-std::vector<Material> read_mtl(const std::string& path, std::vector<std::string>& warnings) {
+MaterialLibrary read_mtl(const std::string& path, std::vector<std::string>& warnings) {
   const std::string content = text::read_input_file(path);
   return MtlReader(path, content).read(warnings);
 }

@@ -7,15 +7,20 @@
 #include <vector>
 
 #include "clray/scene.hpp"
+#include "text/name_index.hpp"
 
 namespace clray {
 
 /// What a material without a name is called.
 inline const std::string kUnnamedMaterial = "(unnamed)";
 
-/// The materials of the library `path`, in its order, each name once (the last counts), as the file writes them,
-/// comments included. Values out of range are taken to its end, with one warning a kind (file:line).
+struct MaterialLibrary {
+  std::vector<Material> materials;  ///< in the file's order, each name once (the last counts), comments included
+  text::NameIndex place_of;         ///< the place of each name in `materials`
+};
+
+/// Reads the library `path`. Values out of range are taken to its end, with one warning a kind (file:line).
 /// Throws Error(input) where a value that is used is no number.
-std::vector<Material> read_mtl(const std::string& path, std::vector<std::string>& warnings);
+MaterialLibrary read_mtl(const std::string& path, std::vector<std::string>& warnings);
 
 }  // namespace clray

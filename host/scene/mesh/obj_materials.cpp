@@ -148,7 +148,14 @@ bool ObjMaterials::library(const std::string& name, std::uint64_t line, std::vec
                        quote_word(inside.string()) + " beside it is read instead",
                    warnings);
   }
-  for (Material& material : read_mtl((folder / inside).string(), warnings)) add(std::move(material), line);
+  MaterialLibrary more = read_mtl((folder / inside).string(), warnings);
+  slot_of_.reserve(materials_.size() + more.materials.size());
+  if (materials_.empty()) {
+    materials_ = std::move(more.materials);
+    material_of_ = std::move(more.place_of);
+  } else {
+    for (Material& material : more.materials) add(std::move(material), line);
+  }
   return true;
 }
 
