@@ -100,15 +100,18 @@ void DevicePass::drain(const PassPlan& plan, Sums* sums) {
       const bool greatest = block.scale == SumScale::greatest;
       each_piece<std::uint32_t>(opened_, buffers_.at("counts"), range, [&](std::uint64_t first, const auto& more) {
         for (std::size_t k = 0; k < more.size(); ++k) {
-          std::uint64_t& sum = sums->counts[first + k];
-          sum = greatest ? std::max<std::uint64_t>(sum, more[k]) : sum + more[k];
+          if (!greatest) {
+            sums->counts.add(first + k, more[k]);
+          } else if (more[k] > sums->counts[first + k]) {
+            sums->counts.set(first + k, more[k]);
+          }
         }
       });
       continue;
     }
     const auto add = [&](const char* buffer, std::int64_t unit) {
       each_piece<std::int64_t>(opened_, buffers_.at(buffer), range, [&](std::uint64_t first, const auto& more) {
-        for (std::size_t k = 0; k < more.size(); ++k) sums->values[first + k] += static_cast<Sum>(more[k]) * unit;
+        for (std::size_t k = 0; k < more.size(); ++k) sums->values.add(first + k, static_cast<Sum>(more[k]) * unit);
       });
     };
     add("sums", 1);

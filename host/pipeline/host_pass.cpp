@@ -80,8 +80,8 @@ Sums trace_on_host(const PassPlan& plan, const Geometry& geometry, std::uint32_t
   Sums out(plan.layout);
   for (std::uint64_t& view : out.points) view = points;
   for (std::size_t k = 0; k < sums.size(); ++k)
-    out.values[k] = sums[k] + (wide.size() == sums.size() ? static_cast<Sum>(wide[k]) * 4294967296 : 0);
-  out.counts.assign(counts.begin(), counts.end());
+    out.values.set(k, sums[k] + (wide.size() == sums.size() ? static_cast<Sum>(wide[k]) * 4294967296 : 0));
+  for (std::size_t k = 0; k < counts.size(); ++k) out.counts.set(k, counts[k]);
   for (std::size_t k = 0; k < counters.size(); ++k)
     out.events[k / CLRAY_COUNTERS][k % CLRAY_COUNTERS] = static_cast<std::uint64_t>(counters[k]);
   return out;

@@ -3,11 +3,27 @@
 #include "pipeline/sums.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "pipeline/estimate.hpp"
 #include "text/hash.hpp"
 
 namespace clray {
+
+namespace {
+
+template <typename Number, typename Numbers>
+std::uint64_t digest_numbers(std::uint64_t state, const Numbers& numbers, std::uint64_t first, std::uint64_t count) {
+  std::array<Number, 1024> some{};
+  for (std::uint64_t done = 0; done < count; done += some.size()) {
+    const std::size_t now = std::min<std::uint64_t>(some.size(), count - done);
+    for (std::size_t k = 0; k < now; ++k) some[k] = numbers[first + done + k];
+    state = fnv1a(state, some.data(), now * sizeof(Number));
+  }
+  return state;
+}
+
+}  // namespace
 
 std::uint64_t SumShape::rows(SumRows kind) const {
   if (kind == SumRows::view) return views;
@@ -41,9 +57,9 @@ void Sums::set_view(const SumLayout& layout, std::size_t view, const Sums* other
     const SumRange range = range_of(layout, block, view, view + 1);
     for (std::uint64_t k = range.begin; k < range.end; ++k) {
       if (block.counts()) {
-        counts[k] = other != nullptr ? other->counts[k] : 0;
+        counts.set(k, other != nullptr ? other->counts[k] : 0);
       } else {
-        values[k] = other != nullptr ? other->values[k] : 0;
+        values.set(k, other != nullptr ? other->values[k] : 0);
       }
     }
   }
@@ -61,7 +77,7 @@ std::uint64_t digest_values(std::uint64_t state, const SumLayout& layout, const 
   for (std::uint32_t b = first; b < last; ++b) {
     const SumBlock& block = layout.blocks[b];
     if (!block.counts() && block.size() != 0)
-      state = fnv1a(state, sums.values.data() + block.offset, block.size() * sizeof(Sum));
+      state = digest_numbers<Sum>(state, sums.values, block.offset, block.size());
   }
   return state;
 }
@@ -76,7 +92,7 @@ std::uint64_t digest_counts(std::uint64_t state, const SumLayout& layout, const 
     for (std::uint32_t b = first; b < last; ++b) {
       const SumBlock& block = layout.blocks[b];
       if (!block.counts() || row >= block.row_count) continue;
-      state = fnv1a(state, sums.counts.data() + block.offset + row * block.width, block.width * sizeof(std::uint64_t));
+      state = digest_numbers<std::uint64_t>(state, sums.counts, block.offset + row * block.width, block.width);
     }
   }
   return state;

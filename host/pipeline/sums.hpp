@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/paged_numbers.hpp"
 #include "scene/tables.hpp"
 #include "shared/abi.h"
 
@@ -49,8 +50,8 @@ struct SumLayout {
 
 /// Integer sums of a pass so far; two runs of the same points have equal sums. Views have points of their own.
 struct Sums {
-  std::vector<Sum> values;  ///< at scale 2^S
-  std::vector<std::uint64_t> counts;
+  PagedNumbers<std::int64_t, Sum> values;  ///< at scale 2^S
+  PagedNumbers<std::uint32_t, std::uint64_t> counts;
   std::vector<std::array<std::uint64_t, CLRAY_COUNTERS>> events;  ///< of each view, CLRAY_COUNT_*
   std::vector<std::uint64_t> points;                              ///< of each view, per replicate (and pixel)
 
@@ -70,8 +71,8 @@ struct SumRange {
 };
 SumRange range_of(const SumLayout& layout, const SumBlock& block, std::size_t first_view, std::size_t end_view);
 
-/// FNV-1a over the blocks of a detector (numbers `first` to `last`), continued from `state`: the values of each block,
-/// or row by row its counts.
+/// FNV-1a over the blocks of a detector (numbers `first` to `last`), continued from `state`: the values of each block
+/// as integers of 128 bits, or row by row its counts as integers of 64.
 std::uint64_t digest_values(std::uint64_t state, const SumLayout& layout, const Sums& sums, std::uint32_t first,
                             std::uint32_t last);
 std::uint64_t digest_counts(std::uint64_t state, const SumLayout& layout, const Sums& sums, std::uint32_t first,

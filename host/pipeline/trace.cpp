@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <optional>
 
 #include "body/geometry.hpp"
 #include "clray/error.hpp"
@@ -64,11 +65,12 @@ Result trace(const Scene& scene, Device& device, const TraceHooks& hooks) {
   Ending ending;
   LitRecords lit;
   for (const PassPlan& plan : plans) {
-    PassRunner runner(device, plan, geometry, scene.trace);
-    result.seconds.compile += runner.compile_seconds();
+    std::optional<PassRunner> runner(std::in_place, device, plan, geometry, scene.trace);
+    result.seconds.compile += runner->compile_seconds();
     const double begin = now();
     const double left = scene.trace.time_limit_s > 0.0 ? std::max(1e-6, scene.trace.time_limit_s - spent) : 0.0;
-    const PassOutcome outcome = drive_pass(geometry, plan, runner, scene.trace, hooks, left);
+    const PassOutcome outcome = drive_pass(geometry, plan, *runner, scene.trace, hooks, left);
+    runner.reset();  // its buffers are as large as the sums
     spent += now() - begin;
     if (outcome.sums.empty()) {
       result.partial = true;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <string>
 
 #include "body/reflectance.hpp"
@@ -34,6 +35,13 @@ void step(Course& course, const char* phase, std::uint64_t points, std::uint32_t
   CHECK(next->points == points);
   CHECK(next->epoch == epoch);
   course.took(error);
+}
+
+template <typename Numbers>
+std::size_t count_of(const Numbers& numbers, int value) {
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < numbers.size(); ++k) count += numbers[k] == static_cast<decltype(numbers[k])>(value);
+  return count;
 }
 
 }  // namespace
@@ -102,18 +110,49 @@ TEST_CASE("blocks of sums: rows, offsets, and what belongs to a view") {
   CHECK(hits_of_second.end == 2 * 3 * 5 + 2 * 7);
   Sums a(layout), b(layout);
   CHECK(a.empty());
-  std::fill(b.values.begin(), b.values.end(), 5);
-  std::fill(b.counts.begin(), b.counts.end(), 6);
+  for (std::size_t k = 0; k < b.values.size(); ++k) b.values.set(k, 5);
+  for (std::size_t k = 0; k < b.counts.size(); ++k) b.counts.set(k, 6);
   b.points = {7, 8};
   a.set_view(layout, 1, &b);
-  CHECK(std::count(a.values.begin(), a.values.end(), 5) == 3 * 4 * 5 * 3);
-  CHECK(a.values.front() == 0);
-  CHECK(a.values.back() == 5);
-  CHECK(std::count(a.counts.begin(), a.counts.end(), 6u) == 3 * 5 + 7);
+  CHECK(count_of(a.values, 5) == 3 * 4 * 5 * 3);
+  CHECK(a.values[0] == 0);
+  CHECK(a.values[a.values.size() - 1] == 5);
+  CHECK(count_of(a.counts, 6) == 3 * 5 + 7);
   CHECK(a.points == std::vector<std::uint64_t>{0, 8});
   b.set_view(layout, 0, nullptr);
-  CHECK(b.values == a.values);
-  CHECK(b.counts == a.counts);
+  for (std::size_t k = 0; k < a.values.size(); ++k) CHECK(b.values[k] == a.values[k]);
+  for (std::size_t k = 0; k < a.counts.size(); ++k) CHECK(b.counts[k] == a.counts[k]);
+}
+
+TEST_CASE("paged numbers are exact beyond their narrow type, and take memory where they are not zero") {
+  using Wide = __int128;
+  constexpr std::size_t kSize = 100000;
+  PagedNumbers<std::int64_t, Wide> paged(kSize);
+  std::vector<Wide> plain(kSize, 0);
+  CHECK(paged.bytes() == 0);
+  std::mt19937_64 random(7);
+  const auto check = [&] {
+    std::size_t wrong = 0;
+    for (std::size_t k = 0; k < kSize; ++k) wrong += paged[k] != plain[k];
+    CHECK(wrong == 0);
+  };
+  for (int k = 0; k < 20000; ++k) {  // in the first half, and small
+    const std::size_t i = random() % (kSize / 2);
+    const Wide more = static_cast<std::int64_t>(random()) >> 20;
+    paged.add(i, more);
+    plain[i] += more;
+  }
+  check();
+  CHECK(paged.bytes() <= (kSize / 2 + 4096) * 8);
+  for (int k = 0; k < 20000; ++k) {  // everywhere, either side of 2^63
+    const std::size_t i = random() % kSize;
+    const Wide more = static_cast<std::int64_t>(random()) * Wide{4294967296} + INT64_MAX;
+    paged.add(i, more);
+    plain[i] += more;
+  }
+  paged.set(kSize - 1, 0);
+  plain[kSize - 1] = 0;
+  check();
 }
 
 TEST_CASE("a table of reflectance follows a step, a root at grazing incidence and a kink between its nodes") {

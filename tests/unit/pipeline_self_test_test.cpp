@@ -95,7 +95,7 @@ TEST_CASE("rays of the built-in scene hit, miss, scatter and end in every way, o
       CHECK(sums.events[0][event] + sums.events[1][event] > 0);
     }
     std::size_t filled = 0;
-    for (const Sum value : sums.values) filled += value != 0;
+    for (std::size_t k = 0; k < sums.values.size(); ++k) filled += sums.values[k] != 0;
     CHECK(filled * 3 > sums.values.size());
   }
 }

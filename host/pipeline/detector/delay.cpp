@@ -108,6 +108,10 @@ void delay_bins(const RoomResults& x, std::size_t v, std::size_t l, std::size_t 
   const auto sum = [&](std::uint32_t r, std::uint64_t b) {
     return x.read.value(x.detector.first_block + kBins, v, l, c, r, b);
   };
+  for (std::vector<double>* numbers : {&out->bin_m2_per_sr, &out->bin_standard_error, &out->bin_upper_bound})
+    numbers->reserve(bins);
+  out->hits.reserve(bins);
+  out->resolved.reserve(bins);
   for (std::uint64_t b = 1; b <= bins; ++b) {
     double mean = 0.0, squares = 0.0;
     std::uint64_t hits = 0;
