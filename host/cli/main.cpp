@@ -175,6 +175,7 @@ int run(int argc, char** argv) {
   Scene scene = load_scene(arguments.scene, arguments.scene_options);
   cli::apply(arguments, scene);
   if (const std::string fault = size_fault(scene, ""); !fault.empty()) throw Error(ErrorCode::input, fault);
+  check_windows(scene);
   if (arguments.check) {
     print(describe_scene(scene) + describe_pass(scene));  // the warnings, too
     return 0;

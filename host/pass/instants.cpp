@@ -12,25 +12,12 @@
 #include "clray/constants.hpp"
 #include "clray/error.hpp"
 #include "pass/geometry.hpp"
+#include "scene/scene_parts.hpp"
 #include "text/columns.hpp"
 
 namespace clray::pass {
 
 namespace {
-
-std::string place_of(const Pass& pass, const std::string& key) {
-  const auto place = pass.places.find(key);
-  return place == pass.places.end() ? "pass." + key : place->second;
-}
-
-[[noreturn]] void fail(const Pass& pass, const std::string& key, const std::string& what) {
-  const std::string place = place_of(pass, key);
-  throw Error(ErrorCode::input, place == "pass." + key ? what : "pass." + key + ": " + what, place);
-}
-
-[[noreturn]] void too_many(const Pass& pass, const std::string& key) {
-  fail(pass, key, fmt::format("makes more than {:g} instants", kMostInstants));
-}
 
 /// The largest angle by which light or an observer moves in the body frame.
 double moved_rad(const PassInstant& a, const PassInstant& b) {
@@ -49,10 +36,6 @@ class AngleSteps {
  public:
   AngleSteps(const Geometry& geometry, const Pass& pass) : geometry_(geometry), pass_(pass) {
     longest_s_ = std::max(1e-6, std::min(30.0, pass.stop_s / 16.0));
-    const PassAttitude& a = pass.attitude;
-    const bool spins = a.law == PassAttitude::Law::spin && a.file.empty() && a.attitudes.empty();
-    if (spins && pass.stop_s / a.spin_period_s * 2.0 * constants::kPi / pass.step_rad > kMostInstants)
-      too_many(pass, "step_deg");
     if (const double turn_s = geometry.attitude().short_time_s(); turn_s > 0.0)
       longest_s_ = std::min(longest_s_, turn_s);
   }
@@ -65,11 +48,11 @@ class AngleSteps {
       const double to = std::min(here.time_s + step, pass_.stop_s);
       PassInstant next = geometry_.at(to);
       if (++looks_ > kMostLooks) {
-        fail(pass_, "step_deg",
-             fmt::format(
-                 "the aspect moves too fast for a pass of {:g} s: {} instants within its first {:g} s; expected a "
-                 "larger angle, a shorter pass, or step_s",
-                 pass_.stop_s, found.size(), here.time_s));
+        fail_pass(pass_, "step_deg",
+                  fmt::format(
+                      "the aspect moves too fast for a pass of {:g} s: {} instants within its first {:g} s; expected a "
+                      "larger angle, a shorter pass, or step_s",
+                      pass_.stop_s, found.size(), here.time_s));
       }
       if (!here.placed || !next.placed) {
         // Where the orbit's file begins or ends, to the shortest step; nothing turns while nothing is known.
@@ -100,7 +83,7 @@ class AngleSteps {
  private:
   void add(const PassInstant& instant, std::vector<PassInstant>* found) const {
     found->push_back(instant);
-    if (static_cast<double>(found->size()) > kMostInstants) too_many(pass_, "step_deg");
+    if (static_cast<double>(found->size()) > kMostInstants) fail_many_instants(pass_, "step_deg");
   }
 
   /// The last time between two at which the aspect is still within the angle of `from`.
@@ -123,7 +106,7 @@ std::vector<double> times_of(const Pass& pass) {
   if (!pass.times_s.empty()) return pass.times_s;
   // The end counts where rounding puts it a little behind the last step.
   const double steps = std::floor(pass.stop_s / pass.step_s * (1.0 + 1e-12) + 1e-9);
-  if (!(steps < kMostInstants)) too_many(pass, "step_s");
+  if (!(steps < kMostInstants)) fail_many_instants(pass, "step_s");
   std::vector<double> times;
   for (double i = 0.0; i <= steps; i += 1.0) times.push_back(std::min(i * pass.step_s, pass.stop_s));
   return times;
@@ -160,11 +143,11 @@ std::vector<PassInstant> instants_of(const Geometry& geometry, const Scene& scen
   if (traced > 0) return all;
   const bool reached = std::any_of(all.begin(), all.end(), [](const PassInstant& i) { return i.placed; });
   if (!reached && all.front().reason == "no ephemeris") {
-    fail(pass, "ephemeris",
-         fmt::format("the orbit covers {}; the pass needs {} to {}", geometry.orbit().trajectory().span_text(),
-                     ephemeris::date_text(all.front().epoch), ephemeris::date_text(all.back().epoch)));
+    fail_pass(pass, "ephemeris",
+              fmt::format("the orbit covers {}; the pass needs {} to {}", geometry.orbit().trajectory().span_text(),
+                          ephemeris::date_text(all.front().epoch), ephemeris::date_text(all.back().epoch)));
   }
-  fail(pass, "start", fmt::format("nothing to trace: of {} instants, {}", all.size(), reasons_text(all)));
+  fail_pass(pass, "start", fmt::format("nothing to trace: of {} instants, {}", all.size(), reasons_text(all)));
 }
 
 double degrees(double rad) {

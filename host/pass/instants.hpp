@@ -8,9 +8,6 @@
 
 namespace clray::pass {
 
-/// The most instants that a pass may have.
-constexpr double kMostInstants = 1e6;
-
 /// Views of the instants that are traced, in order.
 std::vector<Orientation> views(const Scene& scene);
 

@@ -35,6 +35,13 @@ std::string detector_fault(const DetectorSpec& detector);
 /// What is wrong with a source for the scene's detectors, or "": bands in which it has no light.
 std::string source_fault(const Scene& scene);
 
+/// More instants of a pass are refused.
+constexpr double kMostInstants = 1e6;
+
+/// Throws Error(input) for a key of [pass], at its place in the scene file if it has one.
+[[noreturn]] void fail_pass(const Pass& pass, const std::string& key, const std::string& what);
+[[noreturn]] void fail_many_instants(const Pass& pass, const std::string& key);
+
 /// Throws Error(input) where a pass does not fit its scene, or a scene without one moves as only a pass can.
 void check_pass(const Scene& scene);
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "clray/constants.hpp"
 #include "clray/error.hpp"
 #include "scene/file/keys.hpp"
 #include "scene/scene_parts.hpp"
@@ -63,6 +64,17 @@ void check_station(const Scene& scene) {
   if (s.start_mjd != 0.0) fail("station.start_mjd", "given beside [pass], which has a start of its own");
 }
 
+/// The steps whose number is known without the orbit.
+void check_steps(const Pass& pass) {
+  if (!pass.times_s.empty()) return;
+  if (pass.step_s > 0.0 && !(pass.stop_s / pass.step_s < kMostInstants)) fail_many_instants(pass, "step_s");
+  const PassAttitude& a = pass.attitude;
+  const bool spins = a.law == PassAttitude::Law::spin && a.file.empty() && a.attitudes.empty();
+  if (spins && pass.step_rad > 0.0 &&
+      !(pass.stop_s / a.spin_period_s * 2.0 * constants::kPi / pass.step_rad < kMostInstants))
+    fail_many_instants(pass, "step_deg");
+}
+
 }  // namespace
 
 std::string extinction_fault(const Scene& scene, const Observer& o) {
@@ -83,6 +95,16 @@ std::string extinction_fault(const Scene& scene, const Observer& o) {
   return "";
 }
 
+void fail_pass(const Pass& pass, const std::string& key, const std::string& what) {
+  const auto place = pass.places.find(key);
+  if (place == pass.places.end()) fail("pass." + key, what);
+  fail(place->second, "pass." + key + ": " + what);
+}
+
+void fail_many_instants(const Pass& pass, const std::string& key) {
+  fail_pass(pass, key, fmt::format("makes more than {:g} instants", kMostInstants));
+}
+
 void check_pass(const Scene& scene) {
   for (std::size_t i = 0; i < scene.observers.size(); ++i) {
     if (const std::string fault = extinction_fault(scene, scene.observers[i]); !fault.empty())
@@ -94,6 +116,7 @@ void check_pass(const Scene& scene) {
   check_keys("pass", p);
   check_keys("pass.attitude", p.attitude);
   if (p.times_s.empty() && p.step_s == 0.0 && p.step_rad == 0.0) fail("pass.step_s", "missing; expected a step");
+  check_steps(p);
   if (p.ephemeris.empty()) fail("pass.ephemeris", "missing; expected the name of a file");
   if (scene.source.kind == Source::Kind::laser && scene.source.toward == Toward::sun)
     fail("source.direction", "is the Sun's, of a laser; expected kind = \"sun\"");

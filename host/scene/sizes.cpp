@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sizes of results; see clray/sizes.hpp. The host keeps a sum of 128 bits and a count of 64 of each replicate, the
-// device 96 bits, and a result has five numbers a bin. Bytes of files are those of rows as they are written, rounded
-// up.
+// Sizes of results; see clray/sizes.hpp. Host and device keep a sum of 64 bits and a count of 32 of each replicate
+// (more where sums are large), and a result has five numbers a bin. Bytes of files are those of rows as they are
+// written, rounded up.
 #include "clray/sizes.hpp"
 
 #include <fmt/format.h>
@@ -20,7 +20,7 @@
 namespace clray {
 namespace {
 
-constexpr double kReplicateBytes = 16.0 + 8.0 + 12.0;
+constexpr double kReplicateBytes = 12.0 + 12.0;
 constexpr double kHalves = 2.0;  // of a picture's samples
 constexpr double kResultBytes = 40.0;
 constexpr double kTableRow = 110.0;     // of delay.csv, pressure.csv and the like
@@ -53,6 +53,22 @@ double instants_of(const Pass& pass) {
   return std::floor(turns * 2.0 * CLRAY_PI / pass.step_rad) + 1.0;
 }
 
+/// What makes the most of a scene's memory, with its keys: "3601 orientations (motion.step_deg) of 1e7 bins".
+struct Largest {
+  double memory = 0.0;
+  std::string what;
+
+  void note(double bytes, const std::string& text) {
+    if (bytes > memory) *this = {bytes, text};
+  }
+};
+
+const char* step_key(const Scene& scene) {
+  if (scene.motion) return scene.motion->attitudes.empty() ? "motion.step_deg" : "motion.attitudes";
+  if (!scene.pass->times_s.empty()) return "pass.times";
+  return scene.pass->step_s > 0.0 ? "pass.step_s" : "pass.step_deg";
+}
+
 std::string bytes_text(double bytes) {
   const char* const units[] = {"kB", "MB", "GB", "TB", "PB", "EB"};
   std::size_t unit = 0;
@@ -63,7 +79,9 @@ std::string bytes_text(double bytes) {
 
 }  // namespace
 
-SceneSizes scene_sizes(const Scene& scene) {
+namespace {
+
+SceneSizes sizes_of(const Scene& scene, Largest* largest) {
   SceneSizes sizes;
   const double views = scene.motion ? static_cast<double>(orientation_count(*scene.motion))
                        : scene.pass ? instants_of(*scene.pass)
@@ -77,20 +95,32 @@ SceneSizes scene_sizes(const Scene& scene) {
     const double records =
         variants * bands * (row.pixel || d.kind == "delay" || d.kind == "spectrometer" ? observers : 1.0);
     double numbers = 1.0, directions = views, file_bytes = kTableRow;
+    const char* name = "";
     if (d.kind == "delay") {
       numbers = bins_of(d, row);
+      name = value_of(d, row, "bin_ps") > 0.0 ? " bins (bin_ps)" : " bins (bins)";
       file_bytes = views > kManyViews ? kFitsBin : kTableRow + (views > 1.0 ? kFitsBin : 0.0);
     } else if (d.kind == "spectrometer" && views > 1.0) {
       file_bytes = kCurveRow;
     } else if (row.pixel) {
       numbers = value_of(d, row, "width") * value_of(d, row, "height");
+      name = " pixels (width, height)";
       file_bytes = d.kind == "rgb" ? 12.0 : 16.0;
     } else if (value_of(d, row, "azimuth_steps") > 0.0) {
       directions = value_of(d, row, "azimuth_steps") * value_of(d, row, "elevation_steps");
       numbers = 6.0 * static_cast<double>(scene.components.size());
+      name = " numbers (azimuth_steps, elevation_steps)";
     }
-    sizes.memory +=
+    const double memory =
         directions * records * numbers * ((row.pixel ? kHalves : replicates) * kReplicateBytes + kResultBytes);
+    sizes.memory += memory;
+    if (largest != nullptr) {
+      const std::string each = *name == '\0' ? "" : fmt::format(" of {:.6g}{}", numbers, name);
+      const std::string when =
+          views > 1.0 ? fmt::format(", {:.6g} orientations ({})", views, step_key(scene)) : std::string();
+      largest->note(memory, fmt::format("detector {}: {}{}{}", shown_name(d),
+                                        text::counted(static_cast<std::uint64_t>(records), "record"), each, when));
+    }
     sizes.disk += directions * records * numbers * file_bytes;
   }
   const double shooting_s = scene.motion ? scene.motion->stop_s - scene.motion->start_s
@@ -100,20 +130,33 @@ SceneSizes scene_sizes(const Scene& scene) {
   return sizes;
 }
 
+double machine_memory() {
+  return static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGE_SIZE));
+}
+
+}  // namespace
+
+SceneSizes scene_sizes(const Scene& scene) {
+  return sizes_of(scene, nullptr);
+}
+
 std::string size_text(const Scene& scene) {
   const SceneSizes sizes = scene_sizes(scene);
   return fmt::format("about {} of memory and {} on disk", bytes_text(sizes.memory), bytes_text(sizes.disk));
 }
 
+std::string memory_fault(double bytes) {
+  const double memory = machine_memory();
+  if (!(memory > 0.0 && bytes > memory)) return "";
+  return fmt::format("the results need about {} of memory, and this machine has {}", bytes_text(bytes),
+                     bytes_text(memory));
+}
+
 std::string size_fault(const Scene& scene, const std::string& folder) {
-  const SceneSizes sizes = scene_sizes(scene);
-  const double memory = static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGE_SIZE));
-  if (memory > 0.0 && sizes.memory > memory) {
-    return fmt::format(
-        "the results need about {} of memory, and this machine has {}; fewer bins, pixels, bands or orientations were "
-        "expected",
-        bytes_text(sizes.memory), bytes_text(memory));
-  }
+  Largest largest;
+  const SceneSizes sizes = sizes_of(scene, &largest);
+  if (const std::string fault = memory_fault(sizes.memory); !fault.empty())
+    return fault + "; most of it is for " + largest.what;
   if (folder.empty()) return "";
   std::error_code error;
   std::filesystem::path place = std::filesystem::absolute(folder, error);

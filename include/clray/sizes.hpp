@@ -18,6 +18,14 @@ SceneSizes scene_sizes(const Scene& scene);
 /// "about 6.2 GB of memory and 460 MB on disk".
 std::string size_text(const Scene& scene);
 
+/// "the results need about 15 PB of memory, and this machine has 25 GB", or "" where it has so many bytes.
+std::string memory_fault(double bytes);
+
+/// Plans the histograms whose number of bins follows from `bin_ps` and a window that the body gives, before anything is
+/// traced. Throws Error(input) where there are too many bins for a histogram or for this machine. Of other scenes
+/// size_fault() knows enough.
+void check_windows(const Scene& scene);
+
 /// What is impossible on this machine, or "": more memory than it has, more disk than is free where `folder` will be
 /// (not looked at where that is empty).
 std::string size_fault(const Scene& scene, const std::string& folder);

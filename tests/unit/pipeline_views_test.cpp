@@ -8,6 +8,8 @@
 #include "beam/beams.hpp"
 #include "beam/illumination.hpp"
 #include "body/geometry.hpp"
+#include "clray/error.hpp"
+#include "clray/sizes.hpp"
 #include "pipeline/plan.hpp"
 #include "unit/pipeline_support.hpp"
 
@@ -170,4 +172,29 @@ TEST_CASE("views know the range of each observer at their time, and 0 where noth
   CHECK(views[1].ranges_m == std::vector<double>{3e6, 3e6, 5e5});
   CHECK(views[2].ranges_m == std::vector<double>{0.0, 0.0, 5e5});  // beyond the table
   CHECK(views_of_grid(scene, 4, 3)[1].ranges_m == views[0].ranges_m);
+}
+
+TEST_CASE("bins of an automatic window are judged before anything is traced, with their number and the detector") {
+  Scene scene = empty_scene();
+  add_shape(scene, "sphere", {{"radius", 1.0}});
+  const auto said = [&] {
+    try {
+      check_windows(scene);
+    } catch (const Error& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  // Paths by way of a sphere of 1 m go over 4 m, which light takes 13343 ps for.
+  scene.detectors = {{"delay", "camera", {{"bin_ps", 1e-2}}}};
+  CHECK(said().empty());
+  scene.detectors[0].parameters["bin_ps"] = 1e-3;
+  CHECK(said() == "detector camera: bin_ps = 0.001 makes 1.34e+07 bins, at most 1e7 expected");
+  scene.detectors[0].parameters = {{"bin_ps", 1e-3}, {"start_ns", 0.0}, {"stop_ns", 1.0}};
+  CHECK(said().empty());
+  scene.detectors[0].parameters = {{"bin_ps", 1e-2}, {"start_ns", -7.0}};
+  scene.motion = Motion{};
+  scene.motion->period_s = scene.motion->stop_s = 1.0;
+  scene.motion->step_rad = 1e-4;
+  CHECK(said().find("detector camera: bin_ps: the results need about ") == 0);
 }
