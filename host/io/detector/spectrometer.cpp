@@ -123,9 +123,11 @@ void show_spectrometer(const Result& result, ResultText* text) {
     ResultKey key = s.key;
     key.band.clear();
     const std::string magnitude = format_with_error(s.magnitude_AB, s.magnitude_standard_error);
-    const bool received = s.received_W_m2 > 0.0;
+    const char* const nothing = s.intensity_m2_per_sr.value == 0.0 ? "n/a"
+                                : std::isnan(s.extinction_mag)     ? "n/a (below the horizon)"
+                                                                   : "n/a (no range)";
     table.add({record_name(key, result), band_label(s), scaled(s.intensity_m2_per_sr, 1.0),
-               received ? format_with_error(s.received_W_m2, s.received_W_m2_standard_error) : "n/a (no range)",
+               s.received_W_m2 > 0.0 ? format_with_error(s.received_W_m2, s.received_W_m2_standard_error) : nothing,
                magnitude, std::isfinite(s.magnitude_Vega) ? rounded(s.magnitude_Vega, 6) : "n/a",
                fmt::format("{:.4g}", s.phase_angle_rad * constants::kDegrees)});
   }
