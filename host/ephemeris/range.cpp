@@ -155,10 +155,10 @@ void RangeModel::check_covers(double start_s, double stop_s) const {
                                        between(seconds_text(start), seconds_text(stop))));
 }
 
-double RangeModel::elevation_rad(const Instant& time) const {
+Sight RangeModel::sight(const Instant& time) const {
   const double since = since_first_s(time);
   const double flight = distance_m(since) / constants::kLightSpeed_m_s;
-  return sight_of(position_m_, target_->place_m(since + flight) - position_m_).elevation_rad;
+  return sight_of(position_m_, target_->place_m(since + flight) - position_m_);
 }
 
 double observer_range_m(const Observer& observer, const RangeModel* ranges, const Instant& time) {

@@ -11,6 +11,7 @@
 
 #include "clray/scene.hpp"
 #include "ephemeris/cpf.hpp"
+#include "ephemeris/site.hpp"
 
 namespace clray::ephemeris {
 
@@ -46,7 +47,9 @@ class RangeModel {
 
   /// How high above the station's horizon (of the WGS 84 ellipsoid) the pulse fired at `time` meets the target; with a
   /// target alone.
-  double elevation_rad(const Instant& time) const;
+  double elevation_rad(const Instant& time) const { return sight(time).elevation_rad; }
+  /// Elevation and azimuth.
+  Sight sight(const Instant& time) const;
 
   bool fixed() const { return !target_ && rows_.empty(); }
 

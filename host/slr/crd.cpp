@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// CRD v2 full-rate writer; see crd.hpp. A simulated station has no system delay and no atmosphere, and these are
+// CRD v2 writer; see crd.hpp. A simulated station has no system delay and no atmosphere, and these are
 // written as zeros. What is not known is written as "na" where readers take it.
 #include "slr/crd.hpp"
 
@@ -29,10 +29,10 @@ CrdWriter::CrdWriter(const std::string& path, const CrdHeader& h, const CrdSuppl
   file_.text(fmt::format("H2 {} {} {} {} 7 {}\n", h.station, h.pad, h.system, h.occupancy, h.network));
   file_.text(
       fmt::format("H3 {} {} {} {} 0 {} {}\n", h.target, h.cospar, h.sic, h.norad, h.target_class, h.target_location));
-  // Full rate, first release. Corrected for refraction, since light was traced in a vacuum: who corrected the ranges
+  // First release. Corrected for refraction, since light was traced in a vacuum: who corrected the ranges
   // again would shorten them. Not corrected for centre of mass and amplitude. The system delay, which is zero, is
   // applied. Two-way ranges; data quality undefined.
-  file_.text(fmt::format("H4 0 {} {} 0 1 0 0 1 0 2 0\n", calendar(h.start), calendar(h.stop)));
+  file_.text(fmt::format("H4 {} {} {} 0 1 0 0 1 0 2 0\n", h.data_type, calendar(h.start), calendar(h.stop)));
   file_.text(fmt::format("H5 {} {} {} {} {}\n", h.prediction_type, h.prediction_year, h.prediction_date,
                          h.prediction_source, h.prediction_sequence));
   configuration(h);
@@ -61,6 +61,23 @@ void CrdWriter::supplement(const CrdSupplement& s) {
 void CrdWriter::range(const CrdRange& r) {
   static const char* const kTail[] = {" sys 2 0 0 0 na na", " sys 2 1 0 0 na na", " sys 2 2 0 0 na na"};
   file_.text("10 ").decimal(r.epoch_ps, 12).text(" ").decimal(r.flight_ps, 12).text(kTail[r.filter_flag]).end_line();
+}
+
+// Transmitting and receiving, computed, without refraction.
+void CrdWriter::angles(const CrdAngles& a) {
+  file_.text("30 ").decimal(a.epoch_ps, 12);
+  file_.text(fmt::format(" {:.4f} {:.4f} 0 1 1 {:.7f} {:.7f}\n", a.azimuth_deg, a.elevation_deg, a.azimuth_rate_deg_s,
+                         a.elevation_rate_deg_s));
+}
+
+void CrdWriter::normal_point(const CrdNormalPoint& p) {
+  file_.text("11 ").decimal(p.epoch_ps, 12).text(" ").decimal(p.flight_ps, 12);
+  file_.text(fmt::format(" sys 2 {} {} {} {} {} na {} 0 na\n", value(p.window_s, 1), p.ranges, value(p.bin.rms_ps, 1),
+                         value(p.bin.skewness, 3), value(p.bin.kurtosis, 3), value(p.return_rate_percent, 2)));
+}
+
+void CrdWriter::statistics(const CrdStatistics& s) {
+  file_.text(fmt::format("50 sys {} {} {} na 0\n", value(s.rms_ps, 1), value(s.skewness, 3), value(s.kurtosis, 3)));
 }
 
 void CrdWriter::close() {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// ILRS Consolidated Laser Ranging Data format v2 (Ricklefs & Moore 2019, v2.01), full rate: a streaming writer and a
-// strict reader. Fields are separated by blanks; "na" where a value is unknown.
+// ILRS Consolidated Laser Ranging Data format v2 (Ricklefs & Moore 2019, v2.01), full rate and normal points: a
+// streaming writer and a strict reader. Fields are separated by blanks; "na" where a value is unknown.
 #pragma once
 
 #include <cstdint>
@@ -19,6 +19,7 @@ using namespace ephemeris;
 /// The records before the ranges. Texts hold no blanks; unknown numbers are NaN.
 struct CrdHeader {
   Epoch produced, start, stop;
+  int data_type = 0;  ///< H4: 0 full rate, 1 normal points
   std::string station = "clray", pad = "0", system = "0", occupancy = "0", network = "na";
   std::string target = "na", cospar = "na", sic = "na", norad = "na";
   int target_class = 0;     ///< 0: no retro-reflector
@@ -43,6 +44,27 @@ struct CrdSupplement {
   double range_rate_m_s = 0.0;  ///< NaN: unknown
 };
 
+/// Record 30: where the telescope points, without refraction.
+struct CrdAngles {
+  std::int64_t epoch_ps = 0;
+  double azimuth_deg = 0.0, elevation_deg = 0.0;
+  double azimuth_rate_deg_s = 0.0, elevation_rate_deg_s = 0.0;
+};
+
+/// Record 50, and the part of record 11 that is alike: of residuals to the trend. NaN: unknown.
+struct CrdStatistics {
+  double rms_ps = 0.0, skewness = 0.0, kurtosis = 0.0;
+};
+
+/// Record 11: a normal point.
+struct CrdNormalPoint {
+  std::int64_t epoch_ps = 0, flight_ps = 0;
+  double window_s = 0.0;
+  std::uint64_t ranges = 0;
+  CrdStatistics bin;
+  double return_rate_percent = 0.0;
+};
+
 /// Writes a file; the ranges come one by one, so memory does not grow.
 class CrdWriter {
  public:
@@ -51,6 +73,9 @@ class CrdWriter {
 
   void range(const CrdRange& range);
   void supplement(const CrdSupplement& supplement);
+  void angles(const CrdAngles& angles);
+  void normal_point(const CrdNormalPoint& point);
+  void statistics(const CrdStatistics& session);
 
   /// H8 and H9. Throws Error(output) where anything could not be written.
   void close();
@@ -66,6 +91,9 @@ struct CrdFile {
   CrdHeader header;
   std::vector<CrdSupplement> supplements;
   std::uint64_t ranges = 0;
+  std::vector<CrdAngles> angles;
+  std::vector<CrdNormalPoint> points;
+  std::vector<CrdStatistics> statistics;
   std::map<std::string, std::uint64_t> records;  ///< how many of each type
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Strict reader of CRD v2 full-rate files with one session; see crd.hpp. Records that a full-rate file of another
-// station may hold and that we do not use are accepted by their type and number of fields.
+// Strict reader of CRD v2 files with one session, full rate or normal points; see crd.hpp. Records that a file of
+// another station may hold and that we do not use are accepted by their type and number of fields.
 #include <fmt/format.h>
 
 #include "ephemeris/record_text.hpp"
@@ -21,7 +21,7 @@ constexpr Form kForms[] = {{"C0", 4, 12},  {"C1", 10, 10}, {"C2", 17, 17}, {"C3"
                            {"12", 8, 8},   {"20", 6, 6},   {"21", 10, 10}, {"30", 9, 9},   {"40", 18, 18},
                            {"41", 18, 18}, {"42", 15, 15}, {"50", 7, 7},   {"00", 1, 999}};
 
-/// Number of fields of a record; false for a record that the body of a full-rate file cannot have.
+/// Number of fields of a record; false for a record that the body of a file cannot have.
 bool check_form(const RecordReader& in) {
   if (in.type().size() == 2 && in.type()[0] == '9') return true;  // defined by users
   for (const Form& form : kForms) {
@@ -78,7 +78,8 @@ void read_h3(const RecordReader& in, CrdHeader* h) {
 
 void read_h4(const RecordReader& in, CrdHeader* h) {
   in.expect_fields(22, 22);
-  if (in.integer(1, 0, 9, "data type") != 0) in.fail("not full-rate data (data type 0)");
+  h->data_type = static_cast<int>(in.integer(1, 0, 9, "data type"));
+  if (h->data_type > 1) in.fail(fmt::format("data type {}; expected 0 (full rate) or 1 (normal points)", h->data_type));
   h->start = read_date(in, 2, true);
   h->stop = read_date(in, 8, true);
   if (seconds_between(h->start, h->stop) < 0.0) in.fail("the session ends before it starts");
@@ -116,11 +117,15 @@ std::int64_t second_of_day(const RecordReader& in) {
   return ps;
 }
 
+void expect_system(const RecordReader& in, std::size_t i, const std::string& system) {
+  if (in.field(i) != system) in.fail(fmt::format("system configuration \"{}\"; C0 says \"{}\"", in.field(i), system));
+}
+
 CrdRange read_range(const RecordReader& in, const std::string& system) {
   CrdRange r;
   r.epoch_ps = second_of_day(in);
   r.flight_ps = in.picoseconds(2, "time of flight");
-  if (in.field(3) != system) in.fail(fmt::format("system configuration \"{}\"; C0 says \"{}\"", in.field(3), system));
+  expect_system(in, 3, system);
   in.integer(4, 0, 6, "epoch event");
   r.filter_flag = static_cast<int>(in.integer(5, 0, 2, "filter flag"));
   in.integer(6, 0, 99, "detector channel");
@@ -128,6 +133,46 @@ CrdRange read_range(const RecordReader& in, const std::string& system) {
   in.integer_or_na(8, -1, 999999999, 0, "receive amplitude");
   in.integer_or_na(9, -1, 999999999, 0, "transmit amplitude");
   return r;
+}
+
+CrdNormalPoint read_normal_point(const RecordReader& in, const std::string& system) {
+  CrdNormalPoint p;
+  p.epoch_ps = second_of_day(in);
+  p.flight_ps = in.picoseconds(2, "time of flight");
+  expect_system(in, 3, system);
+  in.integer(4, 0, 6, "epoch event");
+  p.window_s = in.number(5, "length of the bin");
+  if (!(p.window_s > 0.0)) in.fail("the length of the bin is not above 0");
+  p.ranges = static_cast<std::uint64_t>(in.integer(6, 1, 999999999, "number of ranges"));
+  p.bin = {in.number_or_na(7, "rms"), in.number_or_na(8, "skewness"), in.number_or_na(9, "kurtosis")};
+  in.number_or_na(10, "peak minus mean");
+  p.return_rate_percent = in.number_or_na(11, "return rate");
+  in.integer(12, 0, 99, "detector channel");
+  in.number_or_na(13, "signal to noise");
+  return p;
+}
+
+CrdAngles read_angles(const RecordReader& in) {
+  CrdAngles a;
+  a.epoch_ps = second_of_day(in);
+  a.azimuth_deg = in.number(2, "azimuth");
+  a.elevation_deg = in.number(3, "elevation");
+  if (!(a.azimuth_deg >= 0.0 && a.azimuth_deg <= 360.0)) in.fail("azimuth; expected 0 to 360 degrees");
+  if (!(a.elevation_deg >= -90.0 && a.elevation_deg <= 90.0)) in.fail("elevation; expected -90 to 90 degrees");
+  in.integer(4, 0, 2, "direction");
+  in.integer(5, 0, 3, "origin of the angles");
+  in.integer(6, 0, 1, "refraction corrected");
+  a.azimuth_rate_deg_s = in.number_or_na(7, "azimuth rate");
+  a.elevation_rate_deg_s = in.number_or_na(8, "elevation rate");
+  return a;
+}
+
+CrdStatistics read_statistics(const RecordReader& in, const std::string& system) {
+  expect_system(in, 1, system);
+  const CrdStatistics s{in.number_or_na(2, "rms"), in.number_or_na(3, "skewness"), in.number_or_na(4, "kurtosis")};
+  in.number_or_na(5, "peak minus mean");
+  in.integer(6, 0, 5, "data quality");
+  return s;
 }
 
 void read_calibration(const RecordReader& in) {
@@ -171,6 +216,8 @@ CrdFile read_crd(const std::string& path, const std::function<void(const CrdRang
   while (in.next() && in.type() != "H8") {
     if (!check_form(in)) in.fail(fmt::format("record {} does not belong here", in.type()));
     ++file.records[in.type()];
+    if ((in.type() == "10" && file.header.data_type != 0) || (in.type() == "11" && file.header.data_type != 1))
+      in.fail(fmt::format("record {} in data of type {} (H4)", in.type(), file.header.data_type));
     if (in.type() == "10") {
       const CrdRange range = read_range(in, system);
       ++file.ranges;
@@ -192,6 +239,12 @@ CrdFile read_crd(const std::string& path, const std::function<void(const CrdRang
       in.integer(5, 0, 1, "origin of values");
     } else if (in.type() == "40") {
       read_calibration(in);
+    } else if (in.type() == "11") {
+      file.points.push_back(read_normal_point(in, system));
+    } else if (in.type() == "30") {
+      file.angles.push_back(read_angles(in));
+    } else if (in.type() == "50") {
+      file.statistics.push_back(read_statistics(in, system));
     }
   }
   if (in.type() != "H8") in.fail("the file ends without H8 and H9");

@@ -11,6 +11,7 @@
 #include "shared/photon.h"
 #include "slr/crd.hpp"
 #include "slr/link.hpp"
+#include "slr/normal_point_file.hpp"
 #include "slr/scatter_plot.hpp"
 #include "slr/session.hpp"
 #include "text/columns.hpp"
@@ -23,6 +24,8 @@ namespace clray::slr {
 namespace {
 
 constexpr double kArcsecPerRad = 206264.80624709636;
+constexpr double kSupplements_s = 60.0, kAngles_s = 10.0;  // between records
+constexpr std::size_t kMostObservations = 20000000;        // that are kept for normal points, 40 bytes each
 
 /// A name as the formats want it in a record: no blanks, at most ten characters.
 std::string word(const std::string& name, std::size_t most = 10) {
@@ -128,7 +131,8 @@ static SessionSummary write_files(Session& session, const Result& result, const 
   CrdWriter crd(path + ".crd", header, supplement(first));
   ScatterPlot picture =
       picture_of(session, station, session.since_s(first), session.since_s(last) + 1.0 / station.rate_Hz);
-  double next_supplement_s = session.since_s(first) + 60.0;
+  double next_supplement_s = session.since_s(first) + kSupplements_s, next_angles_s = session.since_s(first);
+  std::vector<Observation> observations;
   const SessionSummary summary = session.run([&](const Shot& shot) {
     const bool signal = shot.kind == CLRAY_PHOTON_SIGNAL;
     const double flight_ps = 2.0 * shot.range_m / constants::kLightSpeed_m_s * 1e12 + shot.delay_ns * 1e3;
@@ -139,12 +143,26 @@ static SessionSummary write_files(Session& session, const Result& result, const 
     const double since_s = session.since_s(shot.number);
     if (since_s >= next_supplement_s) {
       crd.supplement(supplement(shot.number));
-      next_supplement_s = since_s + 60.0;
+      next_supplement_s = since_s + kSupplements_s;
     }
+    if (since_s >= next_angles_s) {
+      if (const auto angles = angles_at(session, shot.number)) crd.angles(*angles);
+      next_angles_s = since_s + kAngles_s;
+    }
+    if (station.normal_point_s > 0.0 && observations.size() <= kMostObservations)
+      observations.push_back({shot.number, session.ranges().epoch(shot.time), whole, shot.delay_ns});
     crd.range({session.ranges().epoch(shot.time).ps, whole, station.flag_signal ? static_cast<int>(shot.kind) : 0});
     picture.add(since_s, shot.delay_ns, signal);
   });
   csv.close();
+  if (observations.size() > kMostObservations) {
+    if (options.warnings)
+      options.warnings->push_back(fmt::format("there are no normal points of more than {} ranges", kMostObservations));
+  } else if (station.normal_point_s > 0.0) {
+    const NormalPoints points = normal_points(observations, station.normal_point_s);
+    if (!points.points.empty()) crd.statistics(crd_statistics(points.session));
+    write_normal_points(path + ".npt", header, supplement(first), session, station, points);
+  }
   crd.close();
   if (options.plots) {
     const ResultKey& key = session.key();
@@ -299,8 +317,11 @@ MoreFiles session_files(const Result& result, const Scene& scene, const std::str
     one.stem = names.stem(parts);
     slr::Session session(result, scene, one);
     const SessionSummary summary = slr::write_files(session, result, scene, folder, one);
-    for (const char* end : {".csv", ".crd", ".png"}) {
-      if (options.plots || std::string(end) != ".png") files.names.push_back(one.stem + end);
+    for (const char* end : {".csv", ".crd", ".npt", ".png"}) {
+      const bool made = std::string(end) == ".png"   ? options.plots
+                        : std::string(end) == ".npt" ? scene.station->normal_point_s > 0.0
+                                                     : true;
+      if (made) files.names.push_back(one.stem + end);
     }
     sessions.emplace_back(fmt::format("{}", fmt::join(own, "/")), slr::findings_of(session, summary, scene));
   }

@@ -241,6 +241,7 @@ struct Pass {
 
 /// A laser-ranging station and its link (docs/physics.md, section 5); defaults are those printed by a run.
 struct Station {
+  std::string file;  ///< what the scene leaves out is read from this station file; empty: there is none
   std::string name = "clray";
   double range_m = 1.0e6;                         ///< fixed range, when neither table nor prediction is given
   std::vector<std::pair<double, double>> ranges;  ///< (time_s, range_m), increasing time
@@ -260,12 +261,16 @@ struct Station {
   double gate_s = 100.0e-9;
   double jitter_fwhm_s = 0.0;
   double dead_time_s = 0.0;
-  bool flag_signal = false;  ///< CRD filter flag 1 noise, 2 signal; else 0
+  bool flag_signal = false;     ///< CRD filter flag 1 noise, 2 signal; else 0
+  double normal_point_s = 0.0;  ///< bins of normal points, from the start of the UTC day; 0: none
   // What CRD files say of the station; it changes no range.
   int pad = 0, system = 0, occupancy = 0;  ///< its numbers in the International Laser Ranging Service
   std::string network = "na";
   double pressure_hPa = 1013.25, temperature_K = 288.15, humidity_percent = 0.0;  ///< of the standard atmosphere
 };
+
+/// Reads a station file (TOML): the keys of a scene's [station]. Throws Error(input) with file:line:column.
+Station load_station(const std::string& path);
 
 /// Replacements of materials under which the same hits are shaded again.
 struct Variant {

@@ -2,7 +2,9 @@
 # Reads the CRD files of a clray result with Orekit's parser and compares each record 10 with its row of the CSV file
 # beside it: time of flight to 1e-12 s, time of fire to 1e-9 s (Orekit keeps attoseconds, a double of seconds of a day
 # does not). Times are read as TAI, which needs no table of leap seconds: a session of minutes has none.
+# Normal points, angles and statistics must be those that stand in the files.
 import csv
+import math
 import sys
 from decimal import Decimal
 from pathlib import Path
@@ -57,8 +59,49 @@ def check(crd, table):
     print(f"{crd.name}: {len(rows)} ranges of {header.getStationName()}, pad {header.getSystemIdentifier()}: all equal")
 
 
+def records(crd, kind):
+    return [line.split() for line in crd.read_text().splitlines() if line.startswith(kind + " ")]
+
+
+def close(found, written, unit=1.0):
+    return written == "na" if math.isnan(found) else abs(found / unit - float(written)) <= 1e-9 * abs(float(written))
+
+
+def check_points(crd):
+    block = CRDParser(TimeScalesFactory.getTAI()).parse(DataSource(str(crd))).getDataBlocks().get(0)
+    points, written = block.getRangeData(), records(crd, "11")
+    if points.size() != len(written) or not written:
+        fail(f"{crd}: {points.size()} normal points of {len(written)}")
+    for i, record in enumerate(written):
+        p = points.get(i)
+        if abs(p.getTimeOfFlight() - float(record[2])) > 1e-12 or p.getNumberOfRawRanges() != int(record[6]) \
+                or p.getWindowLength() != float(record[5]) or not close(p.getBinRms(), record[7], 1e-12):
+            fail(f"{crd}: normal point {i} is not {' '.join(record)}")
+    print(f"{crd.name}: {len(written)} normal points: all equal")
+
+
+def check_rest(crd):
+    block = CRDParser(TimeScalesFactory.getTAI()).parse(DataSource(str(crd))).getDataBlocks().get(0)
+    angles, written = block.getAnglesData(), records(crd, "30")
+    if angles.size() != len(written):
+        fail(f"{crd}: {angles.size()} angles of {len(written)}")
+    for i, record in enumerate(written):
+        a = angles.get(i)
+        if not close(math.degrees(a.getAzimuth()), record[2]) or not close(math.degrees(a.getElevation()), record[3]):
+            fail(f"{crd}: angles {i} are not {' '.join(record)}")
+    statistics, written = block.getSessionStatisticsRecord(), records(crd, "50")
+    if len(written) > 1 or (statistics is None) != (not written):
+        fail(f"{crd}: {len(written)} records 50, of which it reads {statistics}")
+    if written and not close(statistics.getRms(), written[0][2], 1e-12):
+        fail(f"{crd}: rms {statistics.getRms()} s is not {' '.join(written[0])}")
+
+
 results = sorted(Path(sys.argv[1]).glob("*.crd"))
 if not results:
     fail(f"{sys.argv[1]} holds no CRD file")
 for crd in results:
     check(crd, crd.with_suffix(".csv"))
+    check_rest(crd)
+    if crd.with_suffix(".npt").exists():
+        check_points(crd.with_suffix(".npt"))
+        check_rest(crd.with_suffix(".npt"))

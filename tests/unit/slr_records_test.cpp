@@ -134,5 +134,17 @@ TEST_CASE("CRD: bad files are refused with their line, good ones of other statio
   refused(head + range + tail + range, "after H9");
   refused(range + head, "record 10; expected H1");
   refused(std::string(head).replace(8, 1, "1") + tail, "format version 1; expected 2");
-  refused(std::string(head).replace(head.find("h4  0"), 5, "h4  1") + tail, "not full-rate");
+  refused(std::string(head).replace(head.find("h4  0"), 5, "h4  2") + tail,
+          "data type 2; expected 0 (full rate) or 1 (normal points)");
+  const std::string points = std::string(head).replace(head.find("h4  0"), 5, "h4  1");
+  refused(points + range + tail, "bad.crd:7: record 10 in data of type 1 (H4)");
+  const std::string point = "11 7907.55 0.0479 std 2 120.0 37 31.5 -0.1 0.4 na 1.5 0 na\n";
+  CHECK(read_crd(folder.write("np.crd", points + point + tail), {}).points.front().ranges == 37);
+  refused(head + point + tail, "record 11 in data of type 0 (H4)");
+  refused(points + std::string(point).replace(18, 3, "sys") + tail, "system configuration \"sys\"");
+  refused(points + std::string(point).replace(24, 5, "0") + tail, "the length of the bin is not above 0");
+  refused(points + std::string(point).replace(30, 2, "0") + tail, "number of ranges");
+  refused(head + "30 7907.55 361 45 0 1 1 0 0\n" + tail, "azimuth; expected 0 to 360 degrees");
+  refused(head + "30 7907.55 36 95 0 1 1 0 0\n" + tail, "elevation; expected -90 to 90 degrees");
+  refused(head + "50 std 31.5 x 0.4 na 0\n" + tail, "skewness");
 }

@@ -277,6 +277,15 @@ std::string table_stop_text(const Motion& m) {
 
 // ---- station
 
+/// Read before the other keys, see read_station().
+void read_station_file(TomlTable& t, const std::string& key, Station* s) {
+  s->file = t.file(key);
+}
+
+std::string station_file_text(const Station& s) {
+  return s.file;
+}
+
 void read_ranges(TomlTable& t, const std::string& key, Station* s) {
   s->ranges = read_pairs(t.file(key), {{"time", "t"}, "s"}, {{"range", "distance"}, "m"}, 1e-3, 1e13);
 }
@@ -291,7 +300,8 @@ std::string ranges_text(const Station& s) {
 
 void read_cpf(TomlTable& t, const std::string& key, Station* s) {
   s->cpf_file = t.file(key);
-  if (!t.has("position_m") && !t.has("site")) t.missing("position_m", "three numbers [x, y, z]");
+  if (!t.has("position_m") && !t.has("site") && s->position_m == Vec3(0.0))
+    t.missing("position_m", "three numbers [x, y, z]");
 }
 
 void check_cpf(const std::string& where, const Station& s) {
@@ -336,6 +346,7 @@ const KeyForm<Observer> observer_extinction{read_extinction, check_extinction, e
 const KeyForm<Motion> motion_attitudes{read_motion_attitudes, check_motion_attitudes, attitudes_text};
 const KeyForm<Motion> motion_table_start{read_table_start, check_table_start, table_start_text};
 const KeyForm<Motion> motion_table_stop{read_table_stop, check_table_stop, table_stop_text};
+const KeyForm<Station> station_file{read_station_file, nullptr, station_file_text};
 const KeyForm<Station> station_ranges{read_ranges, check_ranges, ranges_text};
 const KeyForm<Station> station_cpf{read_cpf, check_cpf, cpf_text};
 const KeyForm<Station> station_pulse{read_pulse, check_pulse, pulse_text};

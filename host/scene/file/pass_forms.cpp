@@ -175,6 +175,16 @@ std::string no_observer_text(const Observer&) {
   return "";  // worded as a site
 }
 
+void read_observer_station(TomlTable& t, const std::string& key, Observer* o) {
+  const Station station = load_station(t.file(key));
+  if (station.position_m == Vec3(0.0)) t.fail(key, "the file gives no place; expected site or position_m in it");
+  o->site_m = station.position_m;
+  if (const std::string fault = place_of_earth_fault(o->site_m); !fault.empty()) t.fail(key, fault);
+  o->toward = Toward::site;
+  o->monostatic = false;
+  if (!t.has("name")) o->name = station.name;
+}
+
 void read_station_site(TomlTable& t, const std::string& key, Station* s) {
   s->position_m = read_site(t, key);
 }
@@ -344,6 +354,7 @@ const KeyForm<PassAttitude> attitude_file{read_attitude_file, nullptr, attitude_
 const KeyForm<PassAttitude> attitude_attitudes{read_attitude_table, check_attitude_table, attitude_table_text};
 const KeyForm<PassAttitude> attitude_spin{read_spin, check_spin, spin_text};
 const KeyForm<PassAttitude> attitude_offset{read_offset, check_offset, offset_text};
+const KeyForm<Observer> observer_station{read_observer_station, nullptr, no_observer_text};
 const KeyForm<Station> station_site{read_station_site, nullptr, station_site_text};
 
 }  // namespace forms

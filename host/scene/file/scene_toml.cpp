@@ -11,12 +11,10 @@
 #include "clray/error.hpp"
 #include "clray/keys.hpp"
 #include "scene/file/material.hpp"
-#include "scene/file/toml_depth.hpp"
 #include "scene/file/value_checks.hpp"
 #include "scene/scene_parts.hpp"
 #include "scene/tables.hpp"
 #include "shared/portable.h"
-#include "text/input_file.hpp"
 
 namespace clray {
 namespace {
@@ -26,22 +24,6 @@ namespace fs = std::filesystem;
 /// To radians. Whole turns are taken off before, while that is exact.
 double radians(double degrees) {
   return std::fmod(degrees, 360.0) / 180.0 * CLRAY_PI;
-}
-
-toml::table parse_file(const std::string& path) {
-  const std::string text = text::read_input_file(path);
-  if (const TextPlace deep = deep_key(text); deep.line > 0) {
-    throw Error(ErrorCode::input,
-                fmt::format("a key of more than {} parts; at most that many were expected", kMostKeyParts),
-                fmt::format("{}:{}:{}", path, deep.line, deep.column));
-  }
-  try {
-    return toml::parse(text, path);
-  } catch (const toml::parse_error& e) {
-    const toml::source_position at = e.source().begin;
-    throw Error(ErrorCode::input, "not TOML: " + std::string(e.description()),
-                fmt::format("{}:{}:{}", path, at.line, at.column));
-  }
 }
 
 double length_unit(TomlTable& root) {
@@ -249,7 +231,7 @@ void read_components(TomlTable& root, double length_unit_m, Scene* scene, Materi
 }  // namespace
 
 Scene read_scene_file(const std::string& path, const SceneOptions& options) {
-  const toml::table parsed = parse_file(path);
+  const toml::table parsed = parse_toml(path);
   TomlTable root(parsed, "", path);
   root.know({"length_unit", "reference_point", "material", "component", "variant", "source", "observer", "motion",
              "pass", "station", "detector", "trace"});

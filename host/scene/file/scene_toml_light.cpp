@@ -23,6 +23,19 @@ bool is_photometric_sun(TomlTable& t, const Source& s) {
   return std::any_of(s.bands.begin(), s.bands.end(), is_photometric);
 }
 
+/// Of keys that stand for each other, those of the station file go where the scene gives another.
+void drop_replaced(TomlTable& t, Station* s) {
+  if (t.has("range_m") || t.has("ranges") || t.has("cpf")) {
+    s->range_m = Station().range_m;
+    s->ranges.clear();
+    s->cpf_file.clear();
+  }
+  if (t.has("pulse") || t.has("pulse_fwhm_ps")) {
+    s->pulse_fwhm_s = Station().pulse_fwhm_s;
+    s->pulse.clear();
+  }
+}
+
 }  // namespace
 
 void read_source(TomlTable& root, Scene* scene) {
@@ -64,18 +77,38 @@ void read_motion(TomlTable& root, Scene* scene) {
   scene->motion = std::move(m);
 }
 
-void read_station(TomlTable& root, Scene* scene) {
-  std::optional<TomlTable> t = root.table("station");
-  if (!t) return;
+Station load_station(const std::string& path) {
+  const toml::table parsed = parse_toml(path);
+  TomlTable t(parsed, "station", path);
+  if (t.has("file")) t.fail("file", "is a key of scenes; a station file names no other");
   Station s;
-  read_keys(*t, &s);
+  read_keys(t, &s);
+  return s;
+}
+
+/// `station = "file"` or [station], whose keys stand before those of its `file`.
+void read_station(TomlTable& root, Scene* scene) {
+  const toml::node* value = root.node("station");
+  if (value == nullptr) return;
+  Station s;
+  if (value->is_string()) {
+    const std::string file = root.file("station");
+    s = load_station(file);
+    s.file = file;
+  } else {
+    std::optional<TomlTable> t = root.table("station");
+    if (t->has("file")) s = load_station(t->file("file"));
+    drop_replaced(*t, &s);
+    read_keys(*t, &s);
+  }
   scene->station = std::move(s);
   try {
     check_ranging(*scene);
   } catch (const Error& e) {
-    const std::string own = t->key_path("");
-    if (e.context().rfind(own, 0) != 0) throw;
-    t->fail(e.context().substr(own.size()), e.message());
+    if (e.context().rfind("station.", 0) != 0) throw;
+    if (std::optional<TomlTable> t = value->is_table() ? root.table("station") : std::nullopt)
+      t->fail(e.context().substr(8), e.message());
+    throw Error(ErrorCode::input, e.context() + ": " + e.message(), root.place("station"));
   }
 }
 

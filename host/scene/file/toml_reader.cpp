@@ -9,6 +9,7 @@
 #include <filesystem>
 
 #include "clray/error.hpp"
+#include "scene/file/toml_depth.hpp"
 #include "scene/file/value_checks.hpp"
 #include "text/input_file.hpp"
 
@@ -26,6 +27,22 @@ bool before(const toml::source_region& a, const toml::source_region& b) {
 }
 
 }  // namespace
+
+toml::table parse_toml(const std::string& path) {
+  const std::string text = text::read_input_file(path);
+  if (const TextPlace deep = deep_key(text); deep.line > 0) {
+    throw Error(ErrorCode::input,
+                fmt::format("a key of more than {} parts; at most that many were expected", kMostKeyParts),
+                fmt::format("{}:{}:{}", path, deep.line, deep.column));
+  }
+  try {
+    return toml::parse(text, path);
+  } catch (const toml::parse_error& e) {
+    const toml::source_position at = e.source().begin;
+    throw Error(ErrorCode::input, "not TOML: " + std::string(e.description()),
+                fmt::format("{}:{}:{}", path, at.line, at.column));
+  }
+}
 
 std::string found(const toml::node& node) {
   if (const auto* s = node.as_string()) return "\"" + s->get() + "\"";

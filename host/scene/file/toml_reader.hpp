@@ -96,6 +96,9 @@ class TomlTable {
   std::set<std::string> known_;
 };
 
+/// A TOML file. Throws Error(input) with file:line:column.
+toml::table parse_toml(const std::string& path);
+
 /// What stands there, for messages: `"green"`, `true`, `1.5`, `a table`.
 std::string found(const toml::node& node);
 
