@@ -9,16 +9,13 @@
 
 #include "clray/constants.hpp"
 #include "ephemeris/epoch.hpp"
+#include "io/netcdf/records.hpp"
 #include "io/summary_entries.hpp"
 #include "io/writer.hpp"
 
 namespace clray::io {
 
 namespace {
-
-double degrees(double rad) {
-  return rad * 180.0 / constants::kPi;
-}
 
 /// As part of a column's name: the observer's name without blanks.
 std::string column_of(std::string name) {
@@ -31,22 +28,6 @@ std::string column_of(std::string name) {
 std::string site_column(const Scene& scene, int observer) {
   if (observer < 0) return "_station";
   return column_of(scene.observers[static_cast<std::size_t>(observer)].name);
-}
-
-double phase_rad(const Orientation& view, std::size_t observer) {
-  const Vec3 &s = view.source, &o = view.observers[observer];
-  return std::atan2(glm::length(glm::cross(s, o)), glm::dot(s, o));
-}
-
-/// The sites that instants have, from the first that has any.
-std::vector<int> sites_of(const Result& result) {
-  std::vector<int> sites;
-  for (const PassInstant& instant : result.instants) {
-    if (!instant.placed) continue;
-    for (const SiteSight& sight : instant.sites) sites.push_back(sight.observer);
-    break;
-  }
-  return sites;
 }
 
 std::vector<std::string> columns_of(const Scene& scene, const std::vector<int>& sites) {
@@ -67,6 +48,30 @@ std::vector<std::string> columns_of(const Scene& scene, const std::vector<int>& 
 }
 
 }  // namespace
+
+std::vector<const PassInstant*> traced_instants(const Result& result) {
+  std::vector<const PassInstant*> traced;
+  if (!result.instants.empty()) traced.resize(result.orientations.size(), nullptr);
+  for (const PassInstant& instant : result.instants) {
+    if (instant.traced()) traced[instant.orientation] = &instant;
+  }
+  return traced;
+}
+
+std::vector<int> sites_of(const Result& result) {
+  std::vector<int> sites;
+  for (const PassInstant& instant : result.instants) {
+    if (!instant.placed) continue;
+    for (const SiteSight& sight : instant.sites) sites.push_back(sight.observer);
+    break;
+  }
+  return sites;
+}
+
+double phase_rad(const Orientation& view, std::size_t observer) {
+  const Vec3 &s = view.source, &o = view.observers[observer];
+  return std::atan2(glm::length(glm::cross(s, o)), glm::dot(s, o));
+}
 
 void write_pass(Writer& writer) {
   const std::vector<PassInstant>& instants = writer.result.instants;
@@ -92,14 +97,18 @@ void write_pass(Writer& writer) {
     table.cell(i.sun_share).cell(i.position_m).cell(q.w).cell(q.x).cell(q.y).cell(q.z);
     table.cell(i.view.source).cell(i.sun);
     for (std::size_t o = 0; o < i.view.observers.size(); ++o)
-      table.cell(i.view.observers[o]).cell(degrees(phase_rad(i.view, o)));
+      table.cell(i.view.observers[o]).cell(phase_rad(i.view, o) * constants::kDegrees);
     for (const SiteSight& s : i.sites) {
-      table.cell(s.range_m).cell(degrees(s.elevation_rad)).cell(degrees(s.azimuth_rad)).cell(s.seen ? "1" : "0");
-      table.cell(degrees(s.sun_elevation_rad)).cell(s.daylight ? "1" : "0");
+      table.cell(s.range_m)
+          .cell(s.elevation_rad * constants::kDegrees)
+          .cell(s.azimuth_rad * constants::kDegrees)
+          .cell(s.seen ? "1" : "0");
+      table.cell(s.sun_elevation_rad * constants::kDegrees).cell(s.daylight ? "1" : "0");
     }
     table.end_row();
   }
   table.close();
+  if (writer.options.netcdf) pass_netcdf(writer);
 }
 
 Json pass_entry(const Result& result) {

@@ -93,6 +93,13 @@ TimeUnit readable_time_unit(double seconds);
 /// Time of a record's orientation, s; 0 where unknown.
 double time_of(const Result& result, const ResultKey& key);
 
+/// The instants of a pass that are traced, by their orientation; empty without a pass.
+std::vector<const PassInstant*> traced_instants(const Result& result);
+/// The places that instants of a pass have: indices into Scene::observers, -1 for the station.
+std::vector<int> sites_of(const Result& result);
+/// Angle at the body between the light and an observer.
+double phase_rad(const Orientation& view, std::size_t observer);
+
 /// One total of a result, as the summary lists them.
 struct Total {
   ResultKey key;

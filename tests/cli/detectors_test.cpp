@@ -200,7 +200,7 @@ TEST_CASE("what cannot be done is said in one line, with status 2 or 3 and no fo
                         Case{"[[detector]]\nkind = \"hyperspectral\"\nheight = 0\n", "detector.height: expected"},
                         Case{"[[detector]]\nkind = \"rgb\"\nwidth = 32768\nheight = 32768\n"
                              "[motion]\naxis = [0, 0, 1]\nperiod_s = 1\nstop_s = 1000\nstep_deg = 90\n",  // 64 TiB
-                             "fewer"},
+                             "most of it is for detector rgb"},
                         Case{"[source]\nkind = \"sun\"\ndirection = [0, 0, 0]\n", "source.direction: expected"}}) {
     CAPTURE(c.complaint);
     spit(scratch / "s.toml", head + c.text);

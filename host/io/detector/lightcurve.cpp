@@ -101,16 +101,6 @@ void standardise(BandCurve* band) {
   }
 }
 
-/// Traced instants by their orientation.
-std::vector<const PassInstant*> traced_instants(const Result& result) {
-  std::vector<const PassInstant*> traced;
-  if (!result.instants.empty()) traced.resize(result.orientations.size(), nullptr);
-  for (const PassInstant& instant : result.instants) {
-    if (instant.traced()) traced[instant.orientation] = &instant;
-  }
-  return traced;
-}
-
 const std::vector<std::string> kColumns{"orientation",
                                         "time_utc",
                                         "mjd",

@@ -31,26 +31,35 @@ NetcdfFile netcdf_file(Writer& writer, const std::string& stem, const std::strin
 }
 
 void netcdf_time(NetcdfFile& file, const Writer& writer, const std::vector<std::size_t>& orientations) {
-  file.dimension("time", orientations.size());
-  const std::vector<PassInstant>& instants = writer.result.instants;
+  const std::vector<const PassInstant*> instants = traced_instants(writer.result);
   std::vector<double> times, numbers;
+  std::vector<const PassInstant*> dated;
   for (const std::size_t o : orientations) {
-    double time_s = o < writer.result.orientations.size() ? writer.result.orientations[o].time_s : 0.0;
-    for (const PassInstant& instant : instants) {
-      if (instant.traced() && instant.orientation == o) time_s = calendar_s(instants.front().epoch, instant.epoch);
-    }
-    times.push_back(time_s);
+    if (o < instants.size() && instants[o] != nullptr) dated.push_back(instants[o]);
+    times.push_back(o < writer.result.orientations.size() ? writer.result.orientations[o].time_s : 0.0);
     numbers.push_back(static_cast<double>(o));
   }
-  NetcdfVariable time{"time", {"time"}, "s", "time of the motion", std::move(times), {{"axis", "T"}}};
-  if (!instants.empty()) {
-    time.units = "seconds since " + udunits_date(instants.front().epoch);
-    time.long_name = "time, UTC";
-    time.more.insert(time.more.end(), {{"standard_name", "time"}, {"calendar", "standard"}});
+  if (!orientations.empty() && dated.size() == orientations.size()) {
+    netcdf_dates(file, writer, dated);
+  } else {
+    file.dimension("time", orientations.size());
+    file.variable({"time", {"time"}, "s", "time of the motion", std::move(times), {{"axis", "T"}}});
   }
-  file.variable(std::move(time));
   file.variable(
       {"orientation", {"time"}, "1", "number of the orientation in other files", std::move(numbers), {}, true});
+}
+
+void netcdf_dates(NetcdfFile& file, const Writer& writer, const std::vector<const PassInstant*>& instants) {
+  const Epoch zero = writer.result.instants.front().epoch;
+  std::vector<double> times;
+  for (const PassInstant* instant : instants) times.push_back(calendar_s(zero, instant->epoch));
+  file.dimension("time", instants.size());
+  file.variable({"time",
+                 {"time"},
+                 "seconds since " + udunits_date(zero),
+                 "time, UTC",
+                 std::move(times),
+                 {{"axis", "T"}, {"standard_name", "time"}, {"calendar", "standard"}}});
 }
 
 void netcdf_vectors(NetcdfFile& file) {

@@ -19,6 +19,9 @@ NetcdfFile netcdf_file(Writer& writer, const std::string& stem, const std::strin
 /// "orientation", the number that other files use.
 void netcdf_time(NetcdfFile& file, const Writer& writer, const std::vector<std::size_t>& orientations);
 
+/// The dimension "time" with the dates of instants.
+void netcdf_dates(NetcdfFile& file, const Writer& writer, const std::vector<const PassInstant*>& instants);
+
 /// The dimension "xyz" of vectors.
 void netcdf_vectors(NetcdfFile& file);
 
@@ -41,5 +44,8 @@ void pressure_netcdf(Writer& writer, const std::vector<const PressureResult*>& g
 
 /// hyperspectral.nc: radiance by band, y and x.
 void cube_netcdf(Writer& writer, const ImageResult& image, const std::string& stem);
+
+/// pass.nc: every instant of a pass, by time, observer and site.
+void pass_netcdf(Writer& writer);
 
 }  // namespace clray::io
