@@ -107,7 +107,10 @@ TEST_CASE("what is wrong with a filter or an extinction is said where it stands"
     CAPTURE(text);
     CHECK(text.find(part) != std::string::npos);
   };
-  holds(says("bands = [\"U\"]\n"), "s.toml:5:10: source.bands: expected a filter's name (B, V, R, I, G, g, r, i, z)");
+  holds(says("bands = [\"U\"]\n"), "s.toml:5:10: source.bands: there is no file \"U\"");
+  holds(says("bands = [\"U\"]\n"), "and no filter of the name; expected one of B, V, R, I, G, g, r, i, z");
+  folder.write("curve", "500,0\n550,1\n600,0\n");
+  CHECK(says("bands = [\"curve\"]\n") == "fine");
   holds(says("bands = [\"V\", \"V\"]\n"), "a second band of the name \"V\"");
   holds(says("bands = [{ filter = \"v\" }]\n"), "source.bands.filter: expected one of B, V");
   holds(says("bands = [{ filter = \"V\", low_nm = 3 }]\n"), "given beside filter");

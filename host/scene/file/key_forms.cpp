@@ -73,11 +73,6 @@ Band read_band(TomlTable& t, const toml::node& node) {
     const std::string word = **node.as_string();
     const std::vector<std::string>& known = photometric_bands();
     if (std::find(known.begin(), known.end(), word) != known.end()) return photometric_band(word);
-    if (word.find('.') == std::string::npos) {
-      t.fail_at(node.source(),
-                fmt::format("source.bands: expected a filter's name ({}) or the file of a curve, found {}",
-                            fmt::join(known, ", "), found(node)));
-    }
     // A table of one entry, so that files are found and faults told in one place.
     toml::table one;
     one.insert("bands", *node.as_string());
@@ -86,7 +81,10 @@ Band read_band(TomlTable& t, const toml::node& node) {
       return curve_band(entry, "bands", "");
     } catch (const Error& e) {
       if (e.message().rfind("source.bands: ", 0) != 0) throw;
-      t.fail_at(node.source(), e.message());
+      const bool named = word.find_first_of("./") == std::string::npos;  // rather a filter than a file
+      t.fail_at(node.source(), e.message() + (named ? fmt::format(", and no filter of the name; expected one of {}",
+                                                                  fmt::join(known, ", "))
+                                                    : ""));
     }
   }
   const toml::array* pair = node.as_array();
