@@ -58,7 +58,4 @@ std::size_t observer_of(const Scene& scene, const ResultKey& key);
 std::string band_name(const SpectrometerResult& record);
 std::string band_label(const SpectrometerResult& record);
 
-constexpr const char* kBandColours[] = {"#0b4f94", "#c8511b", "#2b8a3e", "#8a2b84",
-                                        "#a67c00", "#3aa6a6", "#555555", "#d63a6a"};
-
 }  // namespace clray::io

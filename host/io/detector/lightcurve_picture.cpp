@@ -16,6 +16,13 @@
 namespace clray::io {
 namespace {
 
+constexpr const char* kColours[] = {"#0b4f94", "#c8511b", "#2b8a3e", "#8a2b84", "#a67c00", "#3aa6a6",
+                                    "#555555", "#d63a6a", "#7aa329", "#6f5bd6", "#8c4a2f", "#1fa0d8"};
+constexpr int kPoints[] = {7, 5, 9, 13, 11};  // for each round of the colours
+
+/// Beyond so many instants bars would hide each other; the errors are then a band about the line.
+constexpr std::size_t kMostBars = 250;
+
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 enum class Shown { AB, Vega, intensity };
@@ -90,16 +97,31 @@ double put_data(Plot& plot, const Writer& writer, const LightCurve& curve, Shown
   return largest;
 }
 
-/// The curves over column `x`; lines join them where `joined`.
-std::string curves(const LightCurve& curve, int x, bool joined, bool titles) {
+bool too_many(const LightCurve& curve) {
+  return curve.bands.front().rows.size() > kMostBars;
+}
+
+/// The curves over column `x`. Over time lines join them, and they have titles.
+std::string curves(const LightCurve& curve, int x, bool over_time) {
   std::string command = "plot ";
   for (std::size_t b = 0; b < curve.bands.size(); ++b) {
-    const std::string data = "$band" + std::to_string(b) + " using " + std::to_string(x) + ":3";
-    const std::string colour = std::string(" linecolor '") + kBandColours[b % std::size(kBandColours)] + "'";
-    const std::string label = gnuplot_text(band_label(*curve.bands[b].rows.front().record));
-    command += (b > 0 ? ", " : "") + data + ":4 with yerrorbars pointtype 7 pointsize 0.6 linewidth 1.3" + colour +
-               (titles ? " title " + label : " notitle");
-    if (joined) command += ", " + data + " with lines linewidth 1" + colour + " notitle";
+    const std::string data = "$band" + std::to_string(b) + " using " + std::to_string(x) + ":";
+    const std::string colour = std::string("'") + kColours[b % std::size(kColours)] + "'";
+    const std::string points =
+        " pointtype " + std::to_string(kPoints[b / std::size(kColours) % std::size(kPoints)]) + " linecolor " + colour;
+    const std::string title =
+        over_time ? " title " + gnuplot_text(band_label(*curve.bands[b].rows.front().record)) : " notitle";
+    command += b > 0 ? ", " : "";
+    if (!too_many(curve)) {
+      command += data + "3:4 with yerrorbars pointsize 0.6 linewidth 1.3" + points + title;
+      if (over_time) command += ", " + data + "3 with lines linewidth 1 linecolor " + colour + " notitle";
+    } else if (over_time) {
+      command += data + "($3-$4):($3+$4) with filledcurves fillcolor " + colour +
+                 " fillstyle transparent solid 0.3 noborder notitle, " + data + "3 with lines linewidth 1 linecolor " +
+                 colour + title;
+    } else {
+      command += data + "3 with points pointsize 0.3" + points + title;
+    }
   }
   return command;
 }
@@ -126,7 +148,9 @@ void light_curve_picture(Writer& writer, const LightCurve& curve, const std::str
   legend(plot, curve);
   plot.line(phases ? "set multiplot" : "");
   plot.line("set title " + gnuplot_text(writer.title("spectrometer", curve.key) + ": light curve") + " font ',18'");
-  plot.line("set label 1 " + gnuplot_text("bars: ± 1 standard error, at most " + rounded(largest, 2) + unit) +
+  plot.line("set label 1 " +
+            gnuplot_text((too_many(curve) ? "shaded" : "bars") + std::string(": ± 1 standard error, at most ") +
+                         rounded(largest, 2) + unit) +
             " at graph 0.01, graph 0.04 front font ',11' textcolor '#444444'");
   plot.line("set errorbars 0.7; set autoscale xfix; set offsets graph 0.01, graph 0.01, graph 0.05, graph 0.08");
   plot.line(shown == Shown::intensity ? "set ylabel 'A  (m² sr⁻¹)'"
@@ -134,11 +158,11 @@ void light_curve_picture(Writer& writer, const LightCurve& curve, const std::str
                                             (shown == Shown::Vega ? "Vega" : "AB") + " magnitude (brighter is up)'");
   plot.line("set xlabel " + gnuplot_text(label));
   plot.line(phases ? "set tmargin at screen 0.945; set bmargin at screen 0.565" : "set tmargin at screen 0.92");
-  plot.line(curves(curve, 1, true, true));
+  plot.line(curves(curve, 1, true));
   if (phases) {
     plot.line("unset title; unset label 1; set xlabel 'phase angle (deg)'");
     plot.line("set tmargin at screen 0.465; set bmargin at screen 0.085");
-    plot.line(curves(curve, 2, false, false));
+    plot.line(curves(curve, 2, false));
     plot.line("unset multiplot");
   }
   writer.draw(plot, name);
