@@ -58,4 +58,24 @@ bool shape_flat_part(int shape, const double* keys, std::uint32_t part, FlatPart
   return true;
 }
 
+std::array<double, 3> shape_point(const double* record, int axis, double along, double u, double v) {
+  const double* d = record;
+  std::array<double, 3> x, y;
+  x[axis] = along * d[CLRAY_SHAPE_SCALE];
+  x[(axis + 1) % 3] = u * d[CLRAY_SHAPE_SCALE];
+  x[(axis + 2) % 3] = v * d[CLRAY_SHAPE_SCALE];
+  for (int k = 0; k < 3; ++k)
+    y[k] = std::fma(d[k], x[0], std::fma(d[3 + k], x[1], d[6 + k] * x[2])) + d[CLRAY_SHAPE_ORIGIN + k];
+  return y;
+}
+
+std::array<std::array<double, 3>, 4> flat_part_corners(const double* record, const FlatPart& flat) {
+  std::array<std::array<double, 3>, 4> corners;
+  for (int k = 0; k < 4; ++k) {
+    const double u = k == 0 || k == 3 ? flat.a : -flat.a, v = k < 2 ? flat.b : -flat.b;
+    corners[k] = shape_point(record, flat.axis, flat.offset, flat.side * u, v);
+  }
+  return corners;
+}
+
 }  // namespace clray

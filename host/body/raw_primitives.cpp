@@ -11,21 +11,7 @@ namespace clray {
 namespace {
 
 constexpr std::uint32_t kTriangleSize = 9;
-constexpr std::uint32_t kMostParts = 6;  // of an analytic shape: a box
 constexpr int kRoundCorners = 48;        // of the polygon inside a disk
-
-using Point3 = std::array<double, 3>;
-
-/// A point at `along` on an axis of a shape's local frame, u and v on the two axes after it; in its part's frame.
-Point3 from_local(const double* d, int axis, double along, double u, double v) {
-  Point3 x, y;
-  x[axis] = along * d[CLRAY_SHAPE_SCALE];
-  x[(axis + 1) % 3] = u * d[CLRAY_SHAPE_SCALE];
-  x[(axis + 2) % 3] = v * d[CLRAY_SHAPE_SCALE];
-  for (int k = 0; k < 3; ++k)
-    y[k] = std::fma(d[k], x[0], std::fma(d[3 + k], x[1], d[6 + k] * x[2])) + d[CLRAY_SHAPE_ORIGIN + k];
-  return y;
-}
 
 class Faces : public FaceSource {
  public:
@@ -56,17 +42,17 @@ class Faces : public FaceSource {
       return;
     }
     flat_part(raw, face.part, &flat);
-    const int corners = flat.round ? kRoundCorners : 4;
-    for (int k = 0; k < corners; ++k) {
-      double u = k == 0 || k == 3 ? flat.a : -flat.a, v = k < 2 ? flat.b : -flat.b;
-      if (flat.round) {
-        el_sincos(2.0 * CLRAY_PI / kRoundCorners * k, &v, &u);
-        u *= flat.a;
-        v *= flat.a;
+    if (flat.round) {
+      for (int k = 0; k < kRoundCorners; ++k) {
+        double s, c;
+        el_sincos(2.0 * CLRAY_PI / kRoundCorners * k, &s, &c);
+        out->corners.push_back(shape_point(d, flat.axis, flat.offset, flat.side * (c * flat.a), s * flat.a));
       }
-      out->corners.push_back(from_local(d, flat.axis, flat.offset, flat.side * u, v));
+    } else {
+      const auto corners = flat_part_corners(d, flat);
+      out->corners.assign(corners.begin(), corners.end());
     }
-    out->centre = from_local(d, flat.axis, flat.offset, 0.0, 0.0);
+    out->centre = shape_point(d, flat.axis, flat.offset, 0.0, 0.0);
     if (flat.round) out->hole_radius = flat.b * d[CLRAY_SHAPE_SCALE];
   }
 
@@ -82,7 +68,7 @@ class Faces : public FaceSource {
 }  // namespace
 
 std::uint32_t parts_of(const RawPrimitive& raw) {
-  return raw.size == kTriangleSize ? 1u : kMostParts;
+  return raw.size == kTriangleSize ? 1u : kMostShapeParts;
 }
 
 SharedPlanes shared_planes_of(const std::vector<RawPrimitive>& primitives, const std::vector<double>& numbers) {

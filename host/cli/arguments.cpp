@@ -33,7 +33,7 @@ constexpr const char* kFooter =
 /// The options' texts, before they are parsed as values.
 struct Texts {
   std::optional<std::string> rays, target, time, source, observer, bins, bounces, seed, unit, group, slice, sampler,
-      format;
+      format, method;
 };
 
 /// "; did you mean --x?" for an option that comes near, else nothing.
@@ -121,6 +121,7 @@ void add_options(CLI::App& app, Arguments& a, Texts& t) {
 
   text_option(app, "--device", a.device, "cpu|gpu|all|INDEX|NAME",
               "where to compute, by kind, number or part of the name [a GPU if there is one, else the CPU]", run);
+  text_option(app, "--method", t.method, "NAME", key_help("trace", "method"), run);
   text_option(app, "--rays", t.rays, "N", key_help("trace", "rays", "such as 65536, 1e6, 2^22, 4M"), run);
   text_option(app, "--target-error", t.target, "P%",
               key_help("trace", "target_error_percent", "in % [1%, with at least 2^22 rays in all]"), run);
@@ -213,6 +214,10 @@ void parse_values(Arguments& a, const Texts& t) {
                 "'" + *t.format + "': expected csv or netcdf" + text::did_you_mean(*t.format, {"csv", "netcdf"}),
                 "--format");
   a.netcdf = t.format == "netcdf";
+  if (t.method) {
+    const std::string word = for_key("method", *t.method, *t.method, "--method");
+    a.method = word == "exact" ? Method::exact : word == "points" ? Method::points : Method::automatic;
+  }
   if (t.sampler) a.sobol = for_key("sampler", *t.sampler, *t.sampler, "--sampler") == "sobol";
 }
 
@@ -285,6 +290,7 @@ void apply(const Arguments& a, Scene& scene) {
   }
   if (a.time_limit_s) trace.time_limit_s = *a.time_limit_s;
   if (a.max_bounces) trace.max_bounces = *a.max_bounces;
+  if (a.method) trace.method = *a.method;
   if (a.seed) trace.seed = *a.seed;
   if (a.sobol) trace.sobol = *a.sobol;
   if (a.no_specialise) trace.specialise = false;

@@ -22,6 +22,7 @@ struct Arguments {
   std::optional<double> target_error_percent, time_limit_s;
   std::optional<int> max_bounces, work_group;
   std::optional<bool> sobol;
+  std::optional<Method> method;
   bool no_specialise = false, force_bistatic = false;
 
   bool finished = false;  ///< help or version were printed: nothing is left to do

@@ -65,7 +65,15 @@ double student_t95(int freedom) {
   return freedom < 64 ? table[static_cast<std::size_t>(freedom)] : solve_student_t95(freedom);
 }
 
+Estimate exact_number(double value) {
+  Estimate e;
+  e.value = e.low = e.high = value;
+  e.relative_variance_of_variance = std::numeric_limits<double>::quiet_NaN();
+  return e;
+}
+
 Estimate estimate_mean(const std::vector<double>& replicates) {
+  if (replicates.size() == 1) return exact_number(replicates.front());
   const double count = static_cast<double>(replicates.size());
   double sum = 0.0;
   for (const double x : replicates) sum += x;
@@ -96,6 +104,7 @@ bool agree(double value, double standard_error) {
 
 Estimate estimate_total(const std::vector<double>& replicates, double rays) {
   Estimate e = estimate_mean(replicates);
+  if (replicates.size() == 1) return e;
   if (!agree(e.value, e.standard_error) || !(rays > 0.0)) return e;
   e.standard_error = error_of_agreement(replicates.size()) * std::fabs(e.value) / rays;
   const double half = student_t95(static_cast<int>(replicates.size()) - 1) * e.standard_error;
@@ -105,6 +114,7 @@ Estimate estimate_total(const std::vector<double>& replicates, double rays) {
 }
 
 Estimate estimate_jackknife(double pooled, const std::vector<double>& left_out) {
+  if (left_out.size() == 1) return exact_number(pooled);
   const double count = static_cast<double>(left_out.size());
   double mean = 0.0;
   for (const double x : left_out) mean += x / count;

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "clray/error.hpp"
-#include "pipeline/host_opencl.hpp"
+#include "body/host_opencl.hpp"
 #include "pipeline/pass_buffers.hpp"
 #include "shared/abi.h"
 #include "shared/elementary.h"

@@ -272,4 +272,38 @@ PassOutcome drive_pass(const Geometry& geometry, const PassPlan& plan, PassRunne
   return PassDriver(geometry, plan, runner, options, hooks, time_left_s).run();
 }
 
+PassOutcome solve_pass(ExactPass& pass, const TraceOptions& options, const TraceHooks& hooks, double time_left_s) {
+  const double start = now();
+  PassOutcome out;
+  const char* stopped_by = "";
+  const auto keep_going = [&](double share) {
+    const double seconds = now() - start;
+    if (hooks.stop != nullptr && hooks.stop->load()) stopped_by = "interrupt";
+    if (time_left_s > 0.0 && seconds > time_left_s) stopped_by = "time limit";
+    if (hooks.progress) {
+      Progress p;
+      p.phase = "exact";
+      p.fraction = share;
+      p.relative_error = 0.0;
+      p.seconds_left = share > 0.0 ? seconds * (1.0 / share - 1.0) : kNan;
+      hooks.progress(p);
+    }
+    return *stopped_by == '\0';
+  };
+  out.target_asked = options.target_error_percent > 0.0;
+  if (!pass.run(&out.sums, keep_going)) {
+    out.sums = Sums();
+    out.partial = true;
+    out.ending.by = stopped_by;
+    return out;
+  }
+  out.target_reached = out.target_asked;
+  out.ending = {"exact", 0.0, 0};
+  ErrorPoint point;
+  point.phase = "exact";
+  point.seconds = now() - start;
+  out.errors.push_back(point);
+  return out;
+}
+
 }  // namespace clray

@@ -6,6 +6,7 @@
 
 #include "body/geometry.hpp"
 #include "clray/trace.hpp"
+#include "pipeline/exact_pass.hpp"
 #include "pipeline/outcome.hpp"
 #include "pipeline/pass_runner.hpp"
 #include "pipeline/plan.hpp"
@@ -16,5 +17,8 @@ namespace clray {
 /// Error(usage) for more rays than can be numbered, Error(device).
 PassOutcome drive_pass(const Geometry& geometry, const PassPlan& plan, PassRunner& runner, const TraceOptions& options,
                        const TraceHooks& hooks, double time_left_s);
+
+/// Solves an exact pass: there is one step, and it ends whole or, where time or an interrupt ends it, without sums.
+PassOutcome solve_pass(ExactPass& pass, const TraceOptions& options, const TraceHooks& hooks, double time_left_s);
 
 }  // namespace clray

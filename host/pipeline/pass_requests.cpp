@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "beam/illumination.hpp"
+#include "pipeline/method.hpp"
 #include "pipeline/plan.hpp"
 #include "scene/tables.hpp"
 
@@ -24,7 +25,8 @@ std::size_t lanes_together(const DetectorSpec& spec, std::size_t views) {
 /// The requests of a scene, detector by detector.
 class Requests {
  public:
-  explicit Requests(const Scene& scene) : scene_(scene), instants_(views_of_motion(scene)) {}
+  Requests(const Scene& scene, const Geometry& geometry)
+      : scene_(scene), geometry_(geometry), instants_(views_of_motion(scene)) {}
 
   std::vector<PassRequest> all() {
     for (std::size_t d = 0; d < scene_.detectors.size(); ++d) {
@@ -55,18 +57,22 @@ class Requests {
   }
 
   // Every detector whose rays start at the beam from the scene's own direction: one request for all that want the
-  // same lanes, and one for those that take a wide band in parts.
+  // same lanes, and one for those that take a wide band in parts. What can be solved needs no rays and goes apart.
   void beam() {
     PassRequest r = request("trace");
     for (std::size_t o = 0; o < scene_.observers.size(); ++o) r.observers.push_back(static_cast<int>(o));
-    PassRequest parts = r;
+    PassRequest parts = r, solved = r;
     for (std::size_t d = 0; d < scene_.detectors.size(); ++d) {
       if (!row(d).beam || is_grid(d)) continue;
       const bool in_parts = lanes_of(scene_, row(d)).front().share < 1.0;
-      (in_parts ? parts : r).detectors.push_back(static_cast<int>(d));
+      const bool exact = choose_method(scene_, geometry_, scene_.detectors[d], instants_.size()).exact;
+      (exact ? solved : in_parts ? parts : r).detectors.push_back(static_cast<int>(d));
     }
     parts.apart = !r.detectors.empty();
-    for (const PassRequest& each : {r, parts}) {
+    solved.exact = true;
+    solved.replicates = 1;
+    solved.phase = "exact";
+    for (const PassRequest& each : {solved, r, parts}) {
       if (!each.detectors.empty()) add(each, kMostLanes);
     }
   }
@@ -127,6 +133,7 @@ class Requests {
   }
 
   const Scene& scene_;
+  const Geometry& geometry_;
   const std::vector<Orientation> instants_;
   std::size_t next_orientation_ = 0;
   std::vector<PassRequest> requests_;
@@ -134,8 +141,8 @@ class Requests {
 
 }  // namespace
 
-std::vector<PassRequest> pass_requests(const Scene& scene) {
-  return Requests(scene).all();
+std::vector<PassRequest> pass_requests(const Scene& scene, const Geometry& geometry) {
+  return Requests(scene, geometry).all();
 }
 
 }  // namespace clray

@@ -44,7 +44,8 @@ double first_bound(const PassPlan& plan, std::size_t v) {
   return bound;
 }
 
-constexpr int kSumBits = 62 - 24;  // of a slice's 2^24 contributions, each below the limit
+constexpr int kSumBits = 62 - 24;    // of a slice's 2^24 contributions, each below the limit
+constexpr int kExactSumBits = 61;    // the pieces of an exact pass have the beam's area at most, all together
 
 Scales scales_of(const Scene& scene, const Geometry& geometry, const PassPlan& plan) {
   Scales scales;
@@ -53,7 +54,7 @@ Scales scales_of(const Scene& scene, const Geometry& geometry, const PassPlan& p
     const double bound = first_bound(plan, v);
     int exponent = 0;
     if (bound > 0.0) std::frexp(bound * (1.0 + 0x1p-20), &exponent);
-    view.weight_bits = kSumBits - exponent;
+    view.weight_bits = (plan.request.exact ? kExactSumBits : kSumBits) - exponent;
     const auto [low, high] = plan.paths.view(v);
     view.path_middle_m = 0.5 * low + 0.5 * high;
     view.path_half_m = std::max(0.5 * (high - low), std::ldexp(geometry.radius, -10)) * (1.0 + 0x1p-20);
@@ -104,7 +105,7 @@ std::vector<double> settings_of(const Scene& scene, const Geometry& geometry, co
 /// The detectors of a pass, in the order of detector.def: those that were asked for, and the inner ones that they read.
 /// The generic program also has every detector that follows light.
 std::vector<PassDetector> detectors_of(const Scene& scene, const Geometry& geometry, const PassPlan& plan) {
-  const bool all = !scene.trace.specialise, pixels = plan.request.pixels;
+  const bool all = !scene.trace.specialise && !plan.request.exact, pixels = plan.request.pixels;
   std::vector<PassDetector> detectors;
   for (std::size_t r = 0; r < table("detector").size(); ++r) {
     const TableRow& row = table("detector")[r];
@@ -189,9 +190,14 @@ PassPlan plan_pass(const Scene& scene, const Geometry& geometry, PassRequest req
   set_scales(plan.scales, &plan.beams.views);
   plan.detectors = detectors_of(scene, geometry, plan);
   plan.layout = layout_of(plan, &plan.detectors);
-  plan.beams = stratified(
-      std::move(plan.beams), scene, geometry, plan.request,
-      {plan.materials, plan.request.lanes.size(), plan.traits.connect, plan.paths, path_bins_of(plan.detectors)});
+  if (plan.request.exact) {
+    for (const Orientation& view : plan.request.orientations)
+      plan.motions.push_back(motions_of(scene, geometry, view));
+  } else {
+    plan.beams = stratified(
+        std::move(plan.beams), scene, geometry, plan.request,
+        {plan.materials, plan.request.lanes.size(), plan.traits.connect, plan.paths, path_bins_of(plan.detectors)});
+  }
   plan.constants = constants_of(scene, plan);
   plan.program = specialise(scene, geometry, plan);
   return plan;
@@ -199,7 +205,7 @@ PassPlan plan_pass(const Scene& scene, const Geometry& geometry, PassRequest req
 
 std::vector<PassPlan> plan_passes(const Scene& scene, const Geometry& geometry) {
   std::vector<PassPlan> plans;
-  for (PassRequest& request : pass_requests(scene)) plans.push_back(plan_pass(scene, geometry, std::move(request)));
+  for (PassRequest& request : pass_requests(scene, geometry)) plans.push_back(plan_pass(scene, geometry, std::move(request)));
   return plans;
 }
 

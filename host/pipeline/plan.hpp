@@ -26,6 +26,7 @@ struct PassRequest : BeamRequest {
   std::vector<Lane> lanes;
   bool grid = false;   ///< the views are a grid of light directions of a detector's own
   bool apart = false;  ///< it is traced under light of its own, beside others under the scene's
+  bool exact = false;  ///< visibility is solved: no rays, one replicate
   std::uint32_t replicates = 16;
 };
 
@@ -67,6 +68,7 @@ struct PassPlan {
   PathTraits traits;
   MaterialTable materials;
   Beams beams;
+  std::vector<std::vector<RigidMotion>> motions;  ///< of an exact pass: where the parts stand in each view
   PathRanges paths;
   Scales scales;
   std::vector<PassDetector> detectors;
@@ -79,7 +81,7 @@ struct PassPlan {
 std::vector<PassPlan> plan_passes(const Scene& scene, const Geometry& geometry);
 
 /// What each pass of a scene is for: detectors that can share rays share a pass, and so do lanes.
-std::vector<PassRequest> pass_requests(const Scene& scene);
+std::vector<PassRequest> pass_requests(const Scene& scene, const Geometry& geometry);
 
 /// The plan of one pass. Without `reflectances`, materials lack their tables of directional reflectance.
 PassPlan plan_pass(const Scene& scene, const Geometry& geometry, PassRequest request, bool reflectances = true);

@@ -33,6 +33,11 @@ class SumReader {
                       std::uint64_t k) const {
     return sums_.counts[at(plan_.layout.blocks[block], view, lane, c, r) + k];
   }
+  /// Of an exact pass: a bound of the rounding of A, m²/sr.
+  double rounding(std::size_t view, std::size_t lane, std::size_t c) const {
+    const SumShape& shape = plan_.layout.shape;
+    return sums_.rounding[(view * shape.lanes + lane) * shape.connections + c];
+  }
   /// A weight's sum without its area: of pixels, radiance over irradiance times the points.
   double weight(std::uint32_t block, std::size_t view, std::size_t lane, std::uint32_t r, std::uint64_t k) const {
     return static_cast<double>(sums_.values[at(plan_.layout.blocks[block], view, lane, 0, r) + k]) * weight_unit(view);

@@ -54,6 +54,8 @@ struct Sums {
   PagedNumbers<std::uint32_t, std::uint64_t> counts;
   std::vector<std::array<std::uint64_t, CLRAY_COUNTERS>> events;  ///< of each view, CLRAY_COUNT_*
   std::vector<std::uint64_t> points;                              ///< of each view, per replicate (and pixel)
+  /// Of exact passes: a bound of the rounding of A in m²/sr, of each view, lane and connection.
+  std::vector<double> rounding;
 
   Sums() = default;
   /// Zeros for every view.

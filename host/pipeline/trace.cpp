@@ -13,6 +13,7 @@
 #include "clray/error.hpp"
 #include "clray/pass.hpp"
 #include "clray/result.hpp"
+#include "pipeline/exact_pass.hpp"
 #include "pipeline/outcome.hpp"
 #include "pipeline/pass_driver.hpp"
 #include "pipeline/pass_runner.hpp"
@@ -43,6 +44,25 @@ void add_unique(const std::vector<std::string>& from, std::vector<std::string>* 
   }
 }
 
+/// Traces or solves a pass. Adds to the seconds spent compiling and tracing.
+PassOutcome outcome_of(const Scene& scene, Device& device, const PassPlan& plan, const Geometry& geometry,
+                       const TraceHooks& hooks, double time_left_s, double* compiling, double* tracing) {
+  if (plan.request.exact) {
+    ExactPass pass(device, plan, geometry);
+    *compiling += pass.compile_seconds();
+    const double begin = now();
+    PassOutcome outcome = solve_pass(pass, scene.trace, hooks, time_left_s);
+    *tracing += now() - begin;
+    return outcome;
+  }
+  PassRunner runner(device, plan, geometry, scene.trace);
+  *compiling += runner.compile_seconds();
+  const double begin = now();
+  PassOutcome outcome = drive_pass(geometry, plan, runner, scene.trace, hooks, time_left_s);
+  *tracing += now() - begin;
+  return outcome;
+}
+
 }  // namespace
 
 Result trace(const Scene& scene, Device& device, const TraceHooks& hooks) {
@@ -65,13 +85,8 @@ Result trace(const Scene& scene, Device& device, const TraceHooks& hooks) {
   Ending ending;
   LitRecords lit;
   for (const PassPlan& plan : plans) {
-    std::optional<PassRunner> runner(std::in_place, device, plan, geometry, scene.trace);
-    result.seconds.compile += runner->compile_seconds();
-    const double begin = now();
     const double left = scene.trace.time_limit_s > 0.0 ? std::max(1e-6, scene.trace.time_limit_s - spent) : 0.0;
-    const PassOutcome outcome = drive_pass(geometry, plan, *runner, scene.trace, hooks, left);
-    runner.reset();  // its buffers are as large as the sums
-    spent += now() - begin;
+    const PassOutcome outcome = outcome_of(scene, device, plan, geometry, hooks, left, &result.seconds.compile, &spent);
     if (outcome.sums.empty()) {
       result.partial = true;
       result.warnings.push_back("stopped before the first result");
@@ -91,7 +106,7 @@ Result trace(const Scene& scene, Device& device, const TraceHooks& hooks) {
     const std::uint64_t per_point =
         plan.request.replicates * (plan.request.pixels ? static_cast<std::uint64_t>(size.width) * size.height : 1);
     const std::vector<std::uint64_t>& points = outcome.sums.points;
-    if (result.rays == 0) result.rays = *std::max_element(points.begin(), points.end()) * per_point;
+    if (result.rays == 0 && !plan.request.exact) result.rays = *std::max_element(points.begin(), points.end()) * per_point;
     result.rays_total += outcome.rays_total;
     result.digest = digest_of(result.digest, plan, outcome.sums);
     result.errors.insert(result.errors.end(), outcome.errors.begin(), outcome.errors.end());

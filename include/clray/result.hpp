@@ -26,6 +26,10 @@ struct Estimate {
   /// How well the squared standard error is known: 0.10 on average for 16 normal replicates, at most 0.82, when one
   /// replicate differs from all others. NaN without any spread.
   double relative_variance_of_variance = 0.0;
+  /// Of an exact number (docs/exact.md): a bound of its rounding error, in its unit. NaN for an estimate from rays.
+  double rounding_bound = std::numeric_limits<double>::quiet_NaN();
+
+  bool exact() const { return rounding_bound >= 0.0; }
 };
 
 /// A vector with a standard error per component.

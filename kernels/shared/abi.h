@@ -151,6 +151,53 @@ typedef struct ClrayPass {
 #define CLRAY_COUNT_CAPPED 7
 #define CLRAY_COUNTERS 8
 
+/// A triangle as the beam of one view sees it, for exact passes (exact/leaf.cl). x and y lie across the beam, depth
+/// toward the source, m.
+typedef struct ClrayFace {
+  f64 x[3], y[3];        // corners, counter-clockwise
+  f64 depth[3];          // of the corners, from that of the first
+  f64 depth0;            // of the first corner
+  f64 slope_x, slope_y;  // of depth over the face
+  f64 body[9];           // the corners in the body frame, from the body's centre
+  f64 normal[3];         // unit, toward the source
+  f64 offset;            // normal·x on the face's plane
+  f64 box[4];            // least and greatest x, least and greatest y
+  f64 nearest;           // greatest depth
+  f64 margin;            // of depth: what is nearer than the face's own depth less this may hide it
+  // Powers of two: integers per m² of the sums, and what brings x, y (from the first corner) and depth below 1.
+  f64 area_scale, inv_length, inv_depth;
+  f64 path_m;     // path length by way of the first corner, relative to the reference point
+  f64 bin_scale;  // integers per m² of weight 1 in the bins of its view
+  u32 view;
+  u32 order;  // of faces in one place the first hides the others
+} ClrayFace;
+
+// Sums of a face, as integers: area, first moments about its first corner, moments of depth from that corner, a bound
+// of the area that rounding may have moved, and the number of visible pieces.
+#define CLRAY_FACE_AREA 0
+#define CLRAY_FACE_X 1
+#define CLRAY_FACE_Y 2
+#define CLRAY_FACE_DEPTH 3
+#define CLRAY_FACE_DEPTH2 4
+#define CLRAY_FACE_LOST 5
+#define CLRAY_FACE_PIECES 6
+#define CLRAY_FACE_SUMS 7
+
+/// A tile of the beam of a view, and the faces in it: `count` numbers from `first` on, nearest first.
+typedef struct ClrayTile {
+  f64 x0, x1, y0, y1;
+  f64 size;    // of the beam
+  f64 margin;  // distances within it are zero
+  u32 first, count;
+} ClrayTile;
+
+/// The window of a delay detector: `bins` bins from the path length first_m on. Its rows of bins begin at `offset`.
+typedef struct ClrayBinning {
+  f64 first_m, per_metre;
+  u64 offset;
+  u64 bins;
+} ClrayBinning;
+
 // Sizes, asserted in C++ here and on the device by the start-up self-test.
 #define CLRAY_SIZES(X)   \
   X(ClrayMaterial, 120)  \
@@ -162,7 +209,10 @@ typedef struct ClrayPass {
   X(ClrayConnection, 48) \
   X(ClrayBlock, 16)      \
   X(ClrayDetector, 8)    \
-  X(ClrayPass, 80)
+  X(ClrayPass, 80)       \
+  X(ClrayFace, 296)      \
+  X(ClrayTile, 56)       \
+  X(ClrayBinning, 32)
 #ifdef __cplusplus
 #define CLRAY_ASSERT_SIZE(type, size) static_assert(sizeof(type) == size, "abi.h: " #type);
 CLRAY_SIZES(CLRAY_ASSERT_SIZE)

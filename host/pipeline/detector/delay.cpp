@@ -105,6 +105,7 @@ void delay_bins(const RoomResults& x, std::size_t v, std::size_t l, std::size_t 
   const std::uint32_t replicates = x.plan.request.replicates;
   const double count = replicates, largest = largest_weight(x, v, l, c), share = x.read.share(v) / count;
   const std::uint64_t bins = x.plan.layout.blocks[x.detector.first_block + kBins].width - 2;
+  const bool exact = x.plan.request.exact;
   const auto sum = [&](std::uint32_t r, std::uint64_t b) {
     return x.read.value(x.detector.first_block + kBins, v, l, c, r, b);
   };
@@ -124,11 +125,11 @@ void delay_bins(const RoomResults& x, std::size_t v, std::size_t l, std::size_t 
     }
     mean /= count;
     for (std::uint32_t r = 0; r < replicates; ++r) squares += (sum(r, b) - mean) * (sum(r, b) - mean);
-    const bool resolved = hits >= 10 && 2 * replicates_hit >= replicates;
+    const bool resolved = exact || (hits >= 10 && 2 * replicates_hit >= replicates);
     out->bin_m2_per_sr.push_back(mean);
-    const double spread = std::sqrt(squares / (count * (count - 1.0)));
-    const double of_hit = hits == 0 ? 0.0 : error_of_agreement(replicates) * mean * count / static_cast<double>(hits);
-    out->bin_standard_error.push_back(agree(mean, spread) ? of_hit : spread);
+    const double spread = exact ? 0.0 : std::sqrt(squares / (count * (count - 1.0)));
+    const double of_hit = exact || hits == 0 ? 0.0 : error_of_agreement(replicates) * mean * count / static_cast<double>(hits);
+    out->bin_standard_error.push_back(!exact && agree(mean, spread) ? of_hit : spread);
     out->hits.push_back(hits);
     out->resolved.push_back(resolved);
     out->bin_upper_bound.push_back(resolved ? 0.0 : largest * poisson_upper95(hits) * share);
@@ -171,6 +172,44 @@ void delay_results(const RoomResults& x) {
   }
 }
 
+/// The window of an exact pass. All its observers are at the source, so they share one.
+ClrayBinning delay_binning(const PassDetector& detector) {
+  return {detector.settings[kSettingFirst], detector.settings[kSettingPerMetre], 0,
+          static_cast<std::uint64_t>(detector.settings[kSettingBins])};
+}
+
+/// A and its moments of delay, from the visible faces: path length is linear over each.
+void intensity_solved(const SolvedContext& x, Sums* sums) {
+  const SumShape& shape = x.plan.layout.shape;
+  const SumBlock& block = x.plan.layout.blocks[x.detector.first_block];
+  const ClrayView& view = x.plan.beams.views[x.solved.view];
+  const double scale = view.weight_scale / x.plan.beams.area_m2[x.solved.view];
+  sums->rounding.resize(shape.views * shape.lanes * shape.connections);
+  for (std::size_t l = 0; l < shape.lanes; ++l) {
+    Sum moments[3] = {};
+    double rounding = 0.0;
+    for (std::size_t f = 0; f < x.solved.visible.size(); ++f) {
+      const double w = x.solved.weights[f * shape.lanes + l];
+      if (w == 0.0) continue;
+      const VisibleFace& v = x.solved.visible[f];
+      // tau = from + slope·depth
+      const double from = (x.solved.beam.faces[f].path_m - view.path_middle_m) * view.inv_path_per_m;
+      const double slope = -2.0 * view.inv_path_per_m;
+      const double first = std::fma(from, v.area_m2, slope * v.depth_m3);
+      const double second =
+          std::fma(from, std::fma(from, v.area_m2, 2.0 * slope * v.depth_m3), slope * slope * v.depth2_m4);
+      const double values[3] = {v.area_m2, first, second};
+      for (int k = 0; k < 3; ++k) moments[k] += std::llrint(w * values[k] * scale);
+      rounding += w * v.rounding_m2 + 1.0 / scale;
+    }
+    for (std::size_t c = 0; c < shape.connections; ++c) {
+      const std::size_t row = (x.solved.view * shape.lanes + l) * shape.connections + c;
+      for (std::size_t k = 0; k < 3; ++k) sums->values[block.offset + 3 * row + k] = moments[k];
+      sums->rounding[row] = rounding;
+    }
+  }
+}
+
 /// The totals of delay and spectrometer for a run's target: A of every connection.
 void intensity_targets(const TargetContext& x, std::vector<Target>* targets) {
   const SumShape& shape = x.plan.layout.shape;
@@ -185,7 +224,8 @@ void intensity_targets(const TargetContext& x, std::vector<Target>* targets) {
 
 }  // namespace
 
-const DetectorRoom kDelayRoom{"delay", delay_settings, delay_path_bins, nullptr, delay_results};
-const DetectorRoom kIntensityRoom{"intensity", nullptr, nullptr, intensity_targets, nullptr};
+const DetectorRoom kDelayRoom{"delay",       delay_settings, delay_path_bins, nullptr, delay_results, nullptr, nullptr,
+                              delay_binning};
+const DetectorRoom kIntensityRoom{"intensity", nullptr, nullptr, intensity_targets, nullptr, nullptr, intensity_solved};
 
 }  // namespace clray

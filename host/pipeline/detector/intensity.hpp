@@ -22,6 +22,11 @@ inline std::vector<double> intensities(const PassPlan& plan, const SumReader& re
 /// A with its error. The rays that bring it are those that the delay histogram counted, where there is one.
 inline Estimate intensity_estimate(const PassPlan& plan, const SumReader& read, std::size_t v, std::size_t l,
                                    std::size_t c) {
+  if (plan.request.exact) {
+    Estimate exact = exact_number(intensity_moment(plan, read, v, l, c, 0, 0));
+    exact.rounding_bound = read.rounding(v, l, c);
+    return exact;
+  }
   double rays = rays_of(read, v);
   if (const PassDetector* delay = find_detector(plan, "delay")) {
     const std::uint32_t hits = delay->last_block - 1;

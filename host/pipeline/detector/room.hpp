@@ -12,6 +12,7 @@
 #include "beam/strata.hpp"
 #include "pipeline/outcome.hpp"
 #include "pipeline/plan.hpp"
+#include "pipeline/solved_view.hpp"
 #include "pipeline/sum_reader.hpp"
 
 namespace clray {
@@ -34,6 +35,14 @@ struct TargetContext {
   const SumReader& read;
   const Geometry& geometry;
   std::size_t view;
+};
+
+/// A solved view of an exact pass, whose sums a detector makes.
+struct SolvedContext {
+  const PassPlan& plan;
+  const PassDetector& detector;
+  const Geometry& geometry;
+  const SolvedView& solved;
 };
 
 /// One detector of a pass with all its sums.
@@ -72,6 +81,9 @@ struct DetectorRoom {
   void (*targets)(const TargetContext&, std::vector<Target>*) = nullptr;  ///< of a view; default: numbers with a unit
   void (*results)(const RoomResults&) = nullptr;                          ///< default: a table of numbers with a unit
   double (*picture_error)(const TargetContext&) = nullptr;                ///< of a view's picture, over its mean
+  // Of exact passes. A detector that has sums and neither of these two is measured with points.
+  void (*solved)(const SolvedContext&, Sums*) = nullptr;    ///< adds a view's sums
+  ClrayBinning (*binning)(const PassDetector&) = nullptr;  ///< the window of a histogram over path length: block 0
 };
 
 /// The room of a row of detector.def; one with every default where it has none.

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: Apache-2.0
+// See beam_faces.hpp.
+#include "exact/beam_faces.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "body/portable_tables.hpp"
+#include "scene/tables.hpp"
+
+namespace clray {
+namespace {
+
+constexpr double kGrazing = 1e-9;        // below this sine a face is edge-on
+constexpr double kSamePlace = 1e-12;     // of the body's size: distances within it are zero
+constexpr int kSumBits = 61;             // of a face's sums
+constexpr int kLeastExponent = -900;     // of a face's area: smaller ones have no scale in fp64
+constexpr std::uint32_t kRankBits = 30;  // below the rank of a face in its plane
+
+/// The least power of two that is not below |x|, as an exponent.
+int exponent_above(double x) {
+  int e = 0;
+  std::frexp(x, &e);
+  return std::max(e, kLeastExponent);
+}
+
+vec3 to_body(const RigidMotion& motion, const std::array<double, 3>& part, const Point& centre) {
+  const std::array<double, 9>& m = motion.rotation;
+  const double x = part[0] - motion.translation[0], y = part[1] - motion.translation[1],
+               z = part[2] - motion.translation[2];
+  return v3(std::fma(m[0], x, std::fma(m[3], y, m[6] * z)) - centre[0],
+            std::fma(m[1], x, std::fma(m[4], y, m[7] * z)) - centre[1],
+            std::fma(m[2], x, std::fma(m[5], y, m[8] * z)) - centre[2]);
+}
+
+class Builder {
+ public:
+  Builder(const Geometry& geometry, const MaterialTable& materials, const vec3& toward, const vec3& reference,
+          std::uint32_t view)
+      : geometry_(geometry), materials_(materials), view_(view) {
+    out_.toward = toward;
+    v3_frame(toward, &out_.axis_x, &out_.axis_y);
+    out_.size = 2.0 * geometry.radius;
+    out_.margin = kSamePlace * out_.size;
+    const Point& c = geometry.centre;
+    reference_depth_ = v3_dot(toward, v3_sub(reference, v3(c[0], c[1], c[2])));
+  }
+
+  void add(std::uint32_t primitive, const RigidMotion& motion, const std::array<double, 3>* corners, int count) {
+    const vec3 a = to_body(motion, corners[0], geometry_.centre);
+    vec3 b = to_body(motion, corners[1], geometry_.centre);
+    for (int k = 2; k < count; ++k) {
+      const vec3 c = to_body(motion, corners[k], geometry_.centre);
+      triangle(primitive, a, b, c);
+      b = c;
+    }
+  }
+
+  BeamFaces done() {
+    std::vector<std::uint32_t> by_depth(out_.faces.size());
+    std::iota(by_depth.begin(), by_depth.end(), 0u);
+    std::sort(by_depth.begin(), by_depth.end(), [&](std::uint32_t i, std::uint32_t k) {
+      const ClrayFace &a = out_.faces[i], &b = out_.faces[k];
+      if (a.nearest != b.nearest) return a.nearest > b.nearest;
+      return a.order != b.order ? a.order < b.order : i < k;
+    });
+    BeamFaces sorted = out_;
+    for (std::size_t k = 0; k < by_depth.size(); ++k) {
+      sorted.faces[k] = out_.faces[by_depth[k]];
+      sorted.origins[k] = out_.origins[by_depth[k]];
+    }
+    return sorted;
+  }
+
+ private:
+  void triangle(std::uint32_t primitive, const vec3& a, vec3 b, vec3 c) {
+    const vec3 cross = v3_cross(v3_sub(b, a), v3_sub(c, a));
+    const double length = v3_length(cross);
+    if (!(length > 0.0)) return;
+    vec3 n = v3(cross.x / length, cross.y / length, cross.z / length);
+    const double along = v3_dot(n, out_.toward);
+    if (std::fabs(along) < kGrazing) return;
+    const bool front = along > 0.0;
+    if (!front) {
+      std::swap(b, c);
+      n = v3_neg(n);
+    }
+    ClrayFace f{};
+    const vec3 corners[3] = {a, b, c};
+    double depth[3];
+    for (int k = 0; k < 3; ++k) {
+      f.x[k] = v3_dot(out_.axis_x, corners[k]);
+      f.y[k] = v3_dot(out_.axis_y, corners[k]);
+      depth[k] = v3_dot(out_.toward, corners[k]);
+      f.body[3 * k] = corners[k].x;
+      f.body[3 * k + 1] = corners[k].y;
+      f.body[3 * k + 2] = corners[k].z;
+    }
+    const double area2 = difference_of_products(f.x[1] - f.x[0], f.y[2] - f.y[0], f.x[2] - f.x[0], f.y[1] - f.y[0]);
+    if (!(area2 > 0.0)) return;
+    const double cosine = std::fabs(along);
+    f.slope_x = -v3_dot(n, out_.axis_x) / cosine;
+    f.slope_y = -v3_dot(n, out_.axis_y) / cosine;
+    f.depth0 = depth[0];
+    for (int k = 0; k < 3; ++k) f.depth[k] = depth[k] - depth[0];
+    f.normal[0] = n.x;
+    f.normal[1] = n.y;
+    f.normal[2] = n.z;
+    f.offset = v3_dot(n, a);
+    f.box[0] = *std::min_element(f.x, f.x + 3);
+    f.box[1] = *std::max_element(f.x, f.x + 3);
+    f.box[2] = *std::min_element(f.y, f.y + 3);
+    f.box[3] = *std::max_element(f.y, f.y + 3);
+    f.nearest = *std::max_element(depth, depth + 3);
+    f.margin = 4.0 * out_.margin / cosine;
+    set_scales(area2, &f);
+    f.path_m = -2.0 * (f.depth0 - reference_depth_);
+    f.view = view_;
+    push(primitive, front, cosine, f);
+  }
+
+  static void set_scales(double area2, ClrayFace* f) {
+    f->area_scale = std::ldexp(1.0, kSumBits - exponent_above(0.5 * area2));
+    const double length = std::max(f->box[1] - f->box[0], f->box[3] - f->box[2]);
+    const double depth = std::max(std::fabs(f->depth[1]), std::fabs(f->depth[2]));
+    f->inv_length = std::ldexp(1.0, -exponent_above(length));
+    f->inv_depth = depth > 0.0 ? std::ldexp(1.0, -exponent_above(depth)) : 1.0;
+  }
+
+  void push(std::uint32_t primitive, bool front, double cosine, ClrayFace f) {
+    const ClrayPrimitive& p = geometry_.primitives[primitive];
+    const bool two_sided = (materials_.rows[p.material].flags & CLRAY_MATERIAL_TWO_SIDED) != 0;
+    const std::uint32_t rank = front ? 0u : two_sided ? 1u : 2u;
+    f.order = rank << kRankBits | p.id;
+    const bool first = out_.faces.empty();
+    out_.x0 = first ? f.box[0] : std::min(out_.x0, f.box[0]);
+    out_.x1 = first ? f.box[1] : std::max(out_.x1, f.box[1]);
+    out_.y0 = first ? f.box[2] : std::min(out_.y0, f.box[2]);
+    out_.y1 = first ? f.box[3] : std::max(out_.y1, f.box[3]);
+    out_.faces.push_back(f);
+    out_.origins.push_back({primitive, front || two_sided, cosine});
+  }
+
+  const Geometry& geometry_;
+  const MaterialTable& materials_;
+  std::uint32_t view_;
+  double reference_depth_ = 0.0;
+  BeamFaces out_;
+};
+
+bool made_of_faces(std::uint32_t shape) {
+  return table("shape")[shape].faces;
+}
+
+}  // namespace
+
+bool made_of_polygons(const Geometry& geometry) {
+  for (const Part& part : geometry.parts) {
+    for (std::size_t k = 0; k < part.shapes.size(); ++k) {
+      const double* keys = geometry.shapes.data() + part.shapes[k] + CLRAY_SHAPE_KEYS;
+      if (!table("shape")[static_cast<std::size_t>(part.shape_rows[k])].flat) return false;
+      FlatPart flat;
+      for (std::uint32_t p = 0; p < kMostShapeParts; ++p) {
+        if (shape_flat_part(part.shape_rows[k], keys, p, &flat) && flat.round) return false;
+      }
+    }
+  }
+  return geometry.primitives.size() < (std::size_t{1} << kRankBits);
+}
+
+BeamFaces beam_faces(const Geometry& geometry, const MaterialTable& materials, const std::vector<RigidMotion>& motions,
+                     const vec3& toward, const vec3& reference, std::uint32_t view) {
+  Builder builder(geometry, materials, toward, reference, view);
+  for (std::uint32_t i = 0; i < geometry.primitives.size(); ++i) {
+    const ClrayPrimitive& p = geometry.primitives[i];
+    const RigidMotion& motion = motions[geometry.part_of_component[p.component]];
+    const double* data = geometry.shapes.data() + p.data;
+    if (made_of_faces(p.shape)) {
+      const std::array<double, 3> corners[3] = {{{data[0], data[1], data[2]}},
+                                                {{data[3], data[4], data[5]}},
+                                                {{data[6], data[7], data[8]}}};
+      builder.add(i, motion, corners, 3);
+      continue;
+    }
+    FlatPart flat;
+    for (std::uint32_t part = 0; part < kMostShapeParts; ++part) {
+      if (!shape_flat_part(static_cast<int>(p.shape), data + CLRAY_SHAPE_KEYS, part, &flat)) continue;
+      const auto corners = flat_part_corners(data, flat);
+      builder.add(i, motion, corners.data(), 4);
+    }
+  }
+  return builder.done();
+}
+
+}  // namespace clray

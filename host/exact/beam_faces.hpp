@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// The faces of a body as the beam of one view sees them: triangles across the beam with their depth, nearest first.
+// Flat parts of analytic shapes are taken as triangles too. Body frame and beam frame, metres.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "body/geometry.hpp"
+#include "body/materials.hpp"
+#include "shared/abi.h"
+
+namespace clray {
+
+/// What a face of a beam is of the body.
+struct FaceOrigin {
+  std::uint32_t primitive = 0;  ///< in Geometry::primitives
+  bool lit = true;              ///< false: the black back of a one-sided material
+  double mu = 0.0;              ///< cosine of the angle between its normal and the source
+};
+
+struct BeamFaces {
+  std::vector<ClrayFace> faces;  ///< by `nearest` from great to small, then by `order`
+  std::vector<FaceOrigin> origins;
+  vec3 axis_x{}, axis_y{}, toward{};                  ///< of the beam frame, whose origin is the body's centre
+  double x0 = 0.0, x1 = 0.0, y0 = 0.0, y1 = 0.0;      ///< the rectangle around the faces
+  double size = 0.0;                                  ///< of the body
+  double margin = 0.0;                                ///< distances within it are zero
+};
+
+/// Whether all that can be hit is made of polygons, so that visibility can be solved.
+bool made_of_polygons(const Geometry& geometry);
+
+/// The faces that a beam from direction `toward` meets, all of `view`. Faces seen at a grazing angle below 1e-9 rad are
+/// left out. `reference`: where path lengths are zero.
+BeamFaces beam_faces(const Geometry& geometry, const MaterialTable& materials, const std::vector<RigidMotion>& motions,
+                     const vec3& toward, const vec3& reference, std::uint32_t view);
+
+}  // namespace clray

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// Compiles the kernels of exact passes for the host (see portable_faces.hpp).
+#include "exact/portable_faces.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "clray/error.hpp"
+#include "body/host_opencl.hpp"
+
+// Some functions of the kernels stay unused.
+#pragma GCC diagnostic ignored "-Wunused-function"
+
+#define CLRAY_LANES host_numbers.lanes
+#define CLRAY_BINNINGS host_numbers.binnings
+
+namespace clray {
+namespace {
+
+thread_local ExactNumbers host_numbers;
+
+#include "exact/leaf.cl"
+
+}  // namespace
+
+bool face_hides(const ClrayFace& front, const ClrayFace& face, double margin) {
+  double h[3];
+  return hides(&front, &face, margin, h) == CLRAY_EVERYWHERE;
+}
+
+void exact_item_on_host(const ExactBuffers& buffers, const ExactNumbers& numbers, std::uint32_t item,
+                        std::uint32_t skip) {
+  constexpr std::uint32_t kMostWaiting = 1u << 20;
+  host_numbers = numbers;
+  Exact g{};
+#define CLRAY_TAKE(type, name) g.name = buffers.name;
+  CLRAY_EXACT_BUFFERS(CLRAY_TAKE)
+#undef CLRAY_TAKE
+  thread_local std::vector<Fragment> stack(1024);
+  std::uint32_t full = 0;
+  for (;;) {
+    const std::uint32_t pieces = exact_item(&g, item, stack.data(), static_cast<u32>(stack.size()), skip, &full);
+    if (!full) return;
+    skip = std::max(skip, pieces);
+    if (stack.size() >= kMostWaiting) throw Error(ErrorCode::bug, "a face falls into too many pieces", "exact pass");
+    stack.resize(2 * stack.size());
+  }
+}
+
+}  // namespace clray

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// The kernels of exact passes on the host: the same text that devices run, for the tiles, for items that a device leaves
+// unfinished, and for the self-test.
+#pragma once
+
+#include <cstdint>
+
+#include "exact/exact_buffers.h"
+#include "shared/abi.h"
+
+namespace clray {
+
+/// Whether `front` hides `face` wherever both are at one place of the beam.
+bool face_hides(const ClrayFace& front, const ClrayFace& face, double margin);
+
+/// The buffers of exact_item() on the host.
+struct ExactBuffers {
+#define CLRAY_MEMBER(type, name) type* name = nullptr;
+  CLRAY_EXACT_BUFFERS(CLRAY_MEMBER)
+#undef CLRAY_MEMBER
+};
+
+/// What a device's program is built with.
+struct ExactNumbers {
+  std::uint32_t lanes = 1, binnings = 0;
+};
+
+/// One face in one tile, as a work-item of a device does it, from the piece numbered `skip` on. Throws Error(bug) where
+/// the fragments that wait grow beyond all bounds.
+void exact_item_on_host(const ExactBuffers& buffers, const ExactNumbers& numbers, std::uint32_t item,
+                        std::uint32_t skip);
+
+}  // namespace clray

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// The self-test of the kernel of exact passes: faces that cross, share edges and lie in one place, solved on the device
+// and by the same text on the host. Every sum must be equal.
+#pragma once
+
+#include "device/device_impl.hpp"
+#include "device/program.hpp"
+
+namespace clray {
+
+/// Tests a program of exact.cl, unless it passed on this device before. Throws Error(device) with the first sum that is
+/// wrong.
+void run_exact_self_test(OpenedDevice& opened, const std::string& source, const cl::Kernel& kernel,
+                         std::uint32_t lanes, std::uint32_t binnings);
+
+}  // namespace clray

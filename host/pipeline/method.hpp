@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whether a detector's numbers are solved or sampled, and why (docs/exact.md).
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "body/geometry.hpp"
+
+namespace clray {
+
+struct MethodChoice {
+  bool exact = false;
+  std::string why;
+};
+
+/// The method for a detector of the beam in so many views. Throws Error(input) where the scene asks for exact numbers
+/// and they cannot be had.
+MethodChoice choose_method(const Scene& scene, const Geometry& geometry, const DetectorSpec& detector,
+                           std::size_t views);
+
+}  // namespace clray
