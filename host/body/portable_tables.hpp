@@ -40,8 +40,8 @@ struct FlatPart {
 bool shape_flat_part(int shape, const double* keys, std::uint32_t part, FlatPart* flat);
 /// Parts that an analytic shape has at most: a box's faces.
 constexpr std::uint32_t kMostShapeParts = 6;
-/// A point at `along` on an axis of a shape's local frame, u and v on the two axes after it, in the frame of its part of
-/// the body; `record` is the shape's in Geometry::shapes.
+/// A point at `along` on an axis of a shape's local frame, u and v on the two axes after it, in the frame of its part
+/// of the body; `record` is the shape's in Geometry::shapes.
 std::array<double, 3> shape_point(const double* record, int axis, double along, double u, double v);
 /// The corners of a flat part that is a rectangle, counter-clockwise from its front.
 std::array<std::array<double, 3>, 4> flat_part_corners(const double* record, const FlatPart& flat);

@@ -11,7 +11,7 @@ namespace clray {
 namespace {
 
 constexpr std::uint32_t kTriangleSize = 9;
-constexpr int kRoundCorners = 48;        // of the polygon inside a disk
+constexpr int kRoundCorners = 48;  // of the polygon inside a disk
 
 class Faces : public FaceSource {
  public:

@@ -46,9 +46,11 @@ void ProgressBar::show(const Progress& progress) {
   for (int i = 0; i < kWidth; ++i) bar += i < full ? "█" : "·";
   const std::string error =
       std::isfinite(progress.relative_error) ? fmt::format("±{:.2g} %", 100.0 * progress.relative_error) : "± ?";
-  std::string line = fmt::format("{:<8} {} {:3.0f} %  {} rays  {} rays/s  {}  {} left", progress.phase, bar,
-                                 100.0 * fraction, short_count(static_cast<double>(progress.rays)),
-                                 short_count(progress.rays_per_s), error, short_time(progress.seconds_left));
+  std::string line = fmt::format("{:<8} {} {:3.0f} %", progress.phase, bar, 100.0 * fraction);
+  if (progress.rays != 0)
+    line += fmt::format("  {} rays  {} rays/s  {}", short_count(static_cast<double>(progress.rays)),
+                        short_count(progress.rays_per_s), error);
+  line += fmt::format("  {} left", short_time(progress.seconds_left));
   winsize window{};
   const std::size_t width = ::ioctl(STDERR_FILENO, TIOCGWINSZ, &window) == 0 && window.ws_col > 0 ? window.ws_col : 80;
   // A wrapped line cannot be overwritten, so it is cut, between characters.
@@ -110,6 +112,16 @@ std::string target_row(const Result& result) {
          reached + " (stopped by: " + result.stopped_by + ")";
 }
 
+std::string rays_row(const Result& result) {
+  if (result.rays_total == 0 && !result.partial) return "none: visibility is solved";
+  const std::size_t orientations = std::max<std::size_t>(result.orientations.size(), 1);
+  std::string row = short_count(static_cast<double>(result.rays));
+  if (orientations > 1) row += " per orientation";
+  if (result.rays_total > result.rays * orientations)
+    row += ", " + short_count(static_cast<double>(result.rays_total)) + " in all";
+  return row;
+}
+
 }  // namespace
 
 std::string closing_table(const Result& result, const Scene& scene, const std::string& folder,
@@ -121,11 +133,7 @@ std::string closing_table(const Result& result, const Scene& scene, const std::s
                               (result.mesh.triangles ? fmt::format(", {:.6g} m²", result.mesh.area_m2) : "")});
   table.add({"extent", fmt::format("{:.6g} m across", result.extent_m)});
   if (result.orientations.size() > 1) table.add({"orientations", std::to_string(result.orientations.size())});
-  table.add({"rays", short_count(static_cast<double>(result.rays)) +
-                         (result.orientations.size() > 1 ? " per orientation" : "") +
-                         (result.rays_total > result.rays * std::max<std::size_t>(result.orientations.size(), 1)
-                              ? ", " + short_count(static_cast<double>(result.rays_total)) + " in all"
-                              : "")});
+  table.add({"rays", rays_row(result)});
   const auto& s = result.seconds;
   table.add({"time", fmt::format("{} (load {}, BVH {}, compile {}, trace {})", short_time(s.total), short_time(s.load),
                                  short_time(s.bvh), short_time(s.compile), short_time(s.trace))});

@@ -40,6 +40,8 @@ class Builder {
           std::uint32_t view)
       : geometry_(geometry), materials_(materials), view_(view) {
     out_.toward = toward;
+    out_.faces.reserve(geometry.primitives.size());
+    out_.origins.reserve(geometry.primitives.size());
     v3_frame(toward, &out_.axis_x, &out_.axis_y);
     out_.size = 2.0 * geometry.radius;
     out_.margin = kSamePlace * out_.size;
@@ -58,22 +60,50 @@ class Builder {
   }
 
   BeamFaces done() {
-    std::vector<std::uint32_t> by_depth(out_.faces.size());
-    std::iota(by_depth.begin(), by_depth.end(), 0u);
+    std::vector<std::uint32_t> by_depth = distinct();
     std::sort(by_depth.begin(), by_depth.end(), [&](std::uint32_t i, std::uint32_t k) {
       const ClrayFace &a = out_.faces[i], &b = out_.faces[k];
       if (a.nearest != b.nearest) return a.nearest > b.nearest;
       return a.order != b.order ? a.order < b.order : i < k;
     });
-    BeamFaces sorted = out_;
-    for (std::size_t k = 0; k < by_depth.size(); ++k) {
-      sorted.faces[k] = out_.faces[by_depth[k]];
-      sorted.origins[k] = out_.origins[by_depth[k]];
+    std::vector<ClrayFace> faces;
+    std::vector<FaceOrigin> origins;
+    std::vector<double> areas;
+    areas.reserve(by_depth.size());
+    faces.reserve(by_depth.size());
+    origins.reserve(by_depth.size());
+    for (const std::uint32_t k : by_depth) {
+      faces.push_back(out_.faces[k]);
+      origins.push_back(out_.origins[k]);
+      areas.push_back(out_.areas[k]);
     }
-    return sorted;
+    out_.faces = std::move(faces);
+    out_.origins = std::move(origins);
+    out_.areas = std::move(areas);
+    return std::move(out_);
   }
 
  private:
+  /// Every face but those that have the corners of one that comes first in the scene's order: that one hides them.
+  std::vector<std::uint32_t> distinct() const {
+    std::vector<std::uint32_t> all(out_.faces.size()), kept;
+    std::iota(all.begin(), all.end(), 0u);
+    std::vector<std::array<std::array<double, 3>, 3>> corners(all.size());
+    for (const std::uint32_t k : all) {
+      const double* w = out_.faces[k].body;
+      corners[k] = {{{{w[0], w[1], w[2]}}, {{w[3], w[4], w[5]}}, {{w[6], w[7], w[8]}}}};
+      std::sort(corners[k].begin(), corners[k].end());
+    }
+    std::sort(all.begin(), all.end(), [&](std::uint32_t i, std::uint32_t k) {
+      if (corners[i] != corners[k]) return corners[i] < corners[k];
+      return out_.faces[i].order != out_.faces[k].order ? out_.faces[i].order < out_.faces[k].order : i < k;
+    });
+    for (const std::uint32_t k : all) {
+      if (kept.empty() || corners[kept.back()] != corners[k]) kept.push_back(k);
+    }
+    return kept;
+  }
+
   void triangle(std::uint32_t primitive, const vec3& a, vec3 b, vec3 c) {
     const vec3 cross = v3_cross(v3_sub(b, a), v3_sub(c, a));
     const double length = v3_length(cross);
@@ -118,6 +148,7 @@ class Builder {
     f.path_m = -2.0 * (f.depth0 - reference_depth_);
     f.view = view_;
     push(primitive, front, cosine, f);
+    out_.areas.push_back(0.5 * area2);
   }
 
   static void set_scales(double area2, ClrayFace* f) {
@@ -177,9 +208,8 @@ BeamFaces beam_faces(const Geometry& geometry, const MaterialTable& materials, c
     const RigidMotion& motion = motions[geometry.part_of_component[p.component]];
     const double* data = geometry.shapes.data() + p.data;
     if (made_of_faces(p.shape)) {
-      const std::array<double, 3> corners[3] = {{{data[0], data[1], data[2]}},
-                                                {{data[3], data[4], data[5]}},
-                                                {{data[6], data[7], data[8]}}};
+      const std::array<double, 3> corners[3] = {
+          {{data[0], data[1], data[2]}}, {{data[3], data[4], data[5]}}, {{data[6], data[7], data[8]}}};
       builder.add(i, motion, corners, 3);
       continue;
     }

@@ -22,10 +22,11 @@ struct FaceOrigin {
 struct BeamFaces {
   std::vector<ClrayFace> faces;  ///< by `nearest` from great to small, then by `order`
   std::vector<FaceOrigin> origins;
-  vec3 axis_x{}, axis_y{}, toward{};                  ///< of the beam frame, whose origin is the body's centre
-  double x0 = 0.0, x1 = 0.0, y0 = 0.0, y1 = 0.0;      ///< the rectangle around the faces
-  double size = 0.0;                                  ///< of the body
-  double margin = 0.0;                                ///< distances within it are zero
+  std::vector<double> areas;                      ///< across the beam
+  vec3 axis_x{}, axis_y{}, toward{};              ///< of the beam frame, whose origin is the body's centre
+  double x0 = 0.0, x1 = 0.0, y0 = 0.0, y1 = 0.0;  ///< the rectangle around the faces
+  double size = 0.0;                              ///< of the body
+  double margin = 0.0;                            ///< distances within it are zero
 };
 
 /// Whether all that can be hit is made of polygons, so that visibility can be solved.

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "clray/error.hpp"
 #include "body/host_opencl.hpp"
+#include "clray/error.hpp"
 
 // Some functions of the kernels stay unused.
 #pragma GCC diagnostic ignored "-Wunused-function"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The kernels of exact passes on the host: the same text that devices run, for the tiles, for items that a device leaves
-// unfinished, and for the self-test.
+// The kernels of exact passes on the host: the same text that devices run, for the tiles, for items that a device
+// leaves unfinished, and for the self-test.
 #pragma once
 
 #include <cstdint>

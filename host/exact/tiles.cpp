@@ -12,7 +12,8 @@
 namespace clray {
 namespace {
 
-constexpr std::size_t kFewFaces = 96;    // of a leaf: fewer make more tiles, more make each face's list longer
+constexpr std::size_t kFewFaces = 128;  // of a leaf: fewer make more tiles, more make each face's list longer
+constexpr int kMostStalled = 2;
 constexpr std::size_t kMostLevels = 48;  // halvings of each side
 constexpr double kRounding = 1e-15;      // of sides and depths, relative
 
@@ -49,16 +50,18 @@ class Cutter {
     const Rectangle whole{beam_.x0, beam_.x1, beam_.y0, beam_.y1};
     std::vector<std::uint32_t> kept;
     keep_seen(whole, all, &kept);
-    return kept.empty() || cut(whole, kept, 0);
+    return kept.empty() || cut(whole, kept, 0, 0);
   }
 
  private:
-  bool cut(const Rectangle& r, const std::vector<std::uint32_t>& faces, std::size_t level) {
-    if (faces.size() <= kFewFaces || level == kMostLevels) return leaf_({r.x0, r.x1, r.y0, r.y1, faces});
+  /// `stalled`: cuts in a row, down to this tile, that were of no use.
+  bool cut(const Rectangle& r, const std::vector<std::uint32_t>& faces, std::size_t level, int stalled) {
+    if (faces.size() <= kFewFaces || level == kMostLevels) return leaf(r, faces);
     if (level == pools_.size()) pools_.emplace_back();
     std::array<std::vector<std::uint32_t>, 4>& children = pools_[level];
     const double mx = 0.5 * (r.x0 + r.x1), my = 0.5 * (r.y0 + r.y1);
-    const Rectangle quarters[4] = {{r.x0, mx, r.y0, my}, {mx, r.x1, r.y0, my}, {r.x0, mx, my, r.y1}, {mx, r.x1, my, r.y1}};
+    const Rectangle quarters[4] = {
+        {r.x0, mx, r.y0, my}, {mx, r.x1, r.y0, my}, {r.x0, mx, my, r.y1}, {mx, r.x1, my, r.y1}};
     double sum = 0.0, squares = 0.0;
     for (int k = 0; k < 4; ++k) {
       children[k].clear();
@@ -67,13 +70,23 @@ class Cutter {
       sum += n;
       squares += n * n;
     }
-    // Worth it where pairs of faces become fewer, or where no face is taken twice (all lie in one quarter).
+    // A cut is of use where pairs of faces become fewer, or where no face is taken twice (all lie in one quarter). Of
+    // many sheets on top of one another, or a fan about a point, no cut is of use, but of a crowd the next one may be.
     const auto n = static_cast<double>(faces.size());
-    if (squares > 0.75 * n * n && sum > 1.25 * n) return leaf_({r.x0, r.x1, r.y0, r.y1, faces});
+    stalled = squares > 0.75 * n * n && sum > 1.25 * n ? stalled + 1 : 0;
+    if (stalled > kMostStalled) return leaf(r, faces);
     for (int k = 0; k < 4; ++k) {
-      if (!children[k].empty() && !cut(quarters[k], children[k], level + 1)) return false;
+      if (!children[k].empty() && !cut(quarters[k], children[k], level + 1, stalled)) return false;
     }
     return true;
+  }
+
+  bool leaf(const Rectangle& r, const std::vector<std::uint32_t>& faces) {
+    largest_first_ = faces;
+    std::sort(largest_first_.begin(), largest_first_.end(), [&](std::uint32_t i, std::uint32_t k) {
+      return beam_.areas[i] != beam_.areas[k] ? beam_.areas[i] > beam_.areas[k] : i < k;
+    });
+    return leaf_({r.x0, r.x1, r.y0, r.y1, largest_first_});
   }
 
   enum Place { outside, meets, covers };
@@ -145,6 +158,7 @@ class Cutter {
   const BeamFaces& beam_;
   const std::function<bool(const TileFaces&)>& leaf_;
   std::vector<Edges> edges_;
+  std::vector<std::uint32_t> largest_first_;
   std::deque<std::array<std::vector<std::uint32_t>, 4>> pools_;
 };
 

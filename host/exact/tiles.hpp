@@ -12,7 +12,7 @@
 
 namespace clray {
 
-/// A tile with the faces that may be seen in it, numbers of BeamFaces::faces in their order.
+/// A tile with the faces that may be seen in it, numbers of BeamFaces::faces, the largest first.
 struct TileFaces {
   double x0, x1, y0, y1;
   const std::vector<std::uint32_t>& faces;

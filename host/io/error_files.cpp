@@ -23,6 +23,18 @@ std::vector<double> true_errors(const Writer& writer) {
   return errors;
 }
 
+/// The largest bound of rounding over its value, of the exact totals; NaN where there are none.
+double relative_rounding(const Result& result) {
+  double largest = std::nan("");
+  const auto look = [&](const Estimate& e) {
+    if (e.exact() && e.value > 0.0) largest = std::fmax(largest, e.rounding_bound / e.value);
+  };
+  for (const DelayResult& d : result.delay) look(d.intensity_m2_per_sr);
+  for (const SpectrometerResult& s : result.spectrometer) look(s.intensity_m2_per_sr);
+  for (const PressureResult& p : result.pressure) look(p.absorbed_m2);
+  return largest;
+}
+
 void error_table(Writer& writer, const std::vector<double>& truth) {
   auto table =
       writer.table(writer.add("error", "csv"), "error against run time, a row per doubling; the last row is the result",
@@ -30,12 +42,20 @@ void error_table(Writer& writer, const std::vector<double>& truth) {
                    "(standard error: the largest over all totals)");
   std::vector<std::string> columns{"rays", "seconds", "relative_standard_error"};
   if (writer.reference) columns.push_back("relative_true_error");
+  const double rounding = relative_rounding(writer.result);
+  if (!std::isnan(rounding)) columns.push_back("rounding_bound");
   columns.push_back("phase");
   table.columns(columns);
   for (std::size_t i = 0; i < writer.result.errors.size(); ++i) {
     const auto& point = writer.result.errors[i];
-    table.cell(point.rays).cell(point.seconds).cell(point.relative_standard_error);
+    if (point.rays != 0) {
+      table.cell(point.rays);
+    } else {
+      table.cell(std::string_view());  // nothing was sampled
+    }
+    table.cell(point.seconds).cell(point.relative_standard_error);
     if (writer.reference) table.cell(truth[i]);
+    if (!std::isnan(rounding)) table.cell(point.rays == 0 ? rounding : std::nan(""));
     table.cell(std::string_view(point.phase)).end_row();
   }
   table.close();
@@ -139,10 +159,12 @@ void error_picture(Writer& writer, const std::vector<double>& truth) {
   const std::string title = gnuplot_text(writer.scene_name() + ": error against cost");
   if (claimed.points.empty() && confirmed.points.empty()) {
     const bool exact = !writer.result.errors.empty() && writer.result.errors.back().relative_standard_error == 0.0;
+    const bool solved = !std::isnan(relative_rounding(writer.result));
     plot.line("set title " + title + " font ',18'; unset border; unset tics; unset key; unset grid");
     plot.line(std::string("set label 1 ") +
-              gnuplot_text(exact ? "the standard error is exactly 0: every replicate found the same total"
-                                 : "no error to show: nothing came back, or nothing was finished") +
+              gnuplot_text(solved  ? "exact: visibility was solved, nothing was sampled"
+                           : exact ? "the standard error is exactly 0: every replicate found the same total"
+                                   : "no error to show: nothing came back, or nothing was finished") +
               " at graph 0.5, graph 0.5 center font ',18' textcolor '#555555'");
     plot.line("plot [0:1][0:1] -1 notitle");
     writer.draw(plot, name);

@@ -80,7 +80,7 @@ Json head_of(const Writer& writer) {
             {"scene", writer.scene.path.empty() ? writer.scene.name : writer.scene.path},
             {"command", writer.options.command},
             {"seed", r.seed},
-            {"rays", r.rays},
+            {"rays", r.rays != 0 ? Json(r.rays) : Json()},
             {"rays_total", r.rays_total},
             {"replicates", r.replicates},
             {"precision", "fp64"},

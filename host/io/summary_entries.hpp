@@ -37,6 +37,12 @@ inline Json value_and_error(const Estimate& estimate) {
           {"relative_variance_of_variance", estimate.relative_variance_of_variance}};
 }
 
+/// How a number was found, and for an exact one the bound of its rounding.
+inline Json method_of(double rounding_bound) {
+  if (!(rounding_bound >= 0.0)) return {{"method", "points"}};
+  return {{"method", "exact"}, {"rounding_bound", rounding_bound}};
+}
+
 class SummaryEntries {
  public:
   explicit SummaryEntries(const Writer& w) : writer(w) {}

@@ -19,8 +19,8 @@ double normal_variance_of_variance(int replicates);
 /// A number without a statistical error.
 Estimate exact_number(double value);
 
-/// Mean, standard error, interval and relative variance of the variance of the replicates. The number of a single one is
-/// exact.
+/// Mean, standard error, interval and relative variance of the variance of the replicates. The number of a single one
+/// is exact.
 Estimate estimate_mean(const std::vector<double>& replicates);
 
 /// Standard error of a total on which all replicates agree, over what one ray adds to a replicate. Where every ray

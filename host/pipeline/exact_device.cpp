@@ -2,8 +2,6 @@
 // See exact_device.hpp.
 #include "pipeline/exact_device.hpp"
 
-#include <fmt/format.h>
-
 #include <string>
 
 #include "clray/error.hpp"
@@ -14,22 +12,13 @@ namespace clray {
 namespace {
 
 constexpr std::size_t kGroup = 64;  // work-items
-// Fragments that wait in a work-item. Few items need more, and the host finishes those; the results do not depend on it.
-constexpr const char* kStack = "24";
-
-ProgramOptions exact_options(const ExactNumbers& numbers) {
-  ProgramOptions options;
-  options.defines = {{"CLRAY_LANES", std::to_string(numbers.lanes) + "u"},
-                     {"CLRAY_BINNINGS", std::to_string(numbers.binnings) + "u"},
-                     {"CLRAY_EXACT_STACK", kStack}};
-  return options;
-}
 
 /// The kernel, built and tested.
-cl::Kernel tested_kernel(OpenedDevice& opened, const ExactNumbers& numbers) {
-  const std::string source = program_source(opened, "exact.cl", exact_options(numbers));
-  cl::Kernel kernel = make_kernel(opened, build_source(opened, "exact.cl", source, false), "clray_exact");
-  run_exact_self_test(opened, source, kernel, numbers.lanes, numbers.binnings);
+cl::Kernel tested_kernel(OpenedDevice& opened, const ProgramOptions& options, const ExactNumbers& numbers) {
+  const std::string source = program_source(opened, "exact.cl", options);
+  cl::Kernel kernel =
+      make_kernel(opened, build_source(opened, "exact.cl", source, options.warnings_are_errors), "clray_exact");
+  run_exact_self_test(opened, source, kernel, numbers);
   return kernel;
 }
 
@@ -41,9 +30,9 @@ void ItemBatch::clear() {
   items.clear();
 }
 
-ExactDevice::ExactDevice(OpenedDevice& device, const ExactNumbers& numbers, const std::vector<ClrayBinning>& binnings,
-                         std::uint64_t bins)
-    : ExactDevice(device, tested_kernel(device, numbers), numbers, binnings, bins) {}
+ExactDevice::ExactDevice(OpenedDevice& device, const ProgramOptions& options, const ExactNumbers& numbers,
+                         const std::vector<ClrayBinning>& binnings, std::uint64_t bins)
+    : ExactDevice(device, tested_kernel(device, options, numbers), numbers, binnings, bins) {}
 
 ExactDevice::ExactDevice(OpenedDevice& device, const cl::Kernel& kernel, const ExactNumbers& numbers,
                          const std::vector<ClrayBinning>& binnings, std::uint64_t bins)

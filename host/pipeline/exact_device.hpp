@@ -31,8 +31,8 @@ class ExactDevice {
  public:
   /// Builds the program, or takes what was built before, and tests it once per device. `bins`: numbers of all
   /// histograms. Throws Error(device).
-  ExactDevice(OpenedDevice& device, const ExactNumbers& numbers, const std::vector<ClrayBinning>& binnings,
-              std::uint64_t bins);
+  ExactDevice(OpenedDevice& device, const ProgramOptions& options, const ExactNumbers& numbers,
+              const std::vector<ClrayBinning>& binnings, std::uint64_t bins);
 
   /// The same with a kernel that was built before, which is not tested.
   ExactDevice(OpenedDevice& device, const cl::Kernel& kernel, const ExactNumbers& numbers,

@@ -43,9 +43,8 @@ std::vector<ClrayBinning> binnings_of(const PassPlan& plan, std::uint64_t* numbe
 }
 
 bool wants_all_faces(const PassPlan& plan) {
-  return std::any_of(plan.detectors.begin(), plan.detectors.end(), [](const PassDetector& d) {
-    return table("detector")[static_cast<std::size_t>(d.row)].scatters;
-  });
+  return std::any_of(plan.detectors.begin(), plan.detectors.end(),
+                     [](const PassDetector& d) { return table("detector")[static_cast<std::size_t>(d.row)].scatters; });
 }
 
 /// Some views while they are solved.
@@ -60,7 +59,11 @@ class Solver {
  public:
   Solver(const PassPlan& plan, const Geometry& geometry, std::vector<std::unique_ptr<ExactDevice>>& devices,
          const std::function<bool(double)>& keep_going, Sums* sums)
-      : plan_(plan), geometry_(geometry), devices_(devices), keep_going_(keep_going), sums_(*sums),
+      : plan_(plan),
+        geometry_(geometry),
+        devices_(devices),
+        keep_going_(keep_going),
+        sums_(*sums),
         all_faces_(wants_all_faces(plan)) {}
 
   bool run() {
@@ -208,7 +211,7 @@ ExactPass::ExactPass(Device& device, const PassPlan& plan, const Geometry& geome
   const ExactNumbers numbers{static_cast<std::uint32_t>(plan.request.lanes.size()),
                              static_cast<std::uint32_t>(binnings_.size())};
   for (OpenedDevice& opened : device.impl().devices)
-    devices_.push_back(std::make_unique<ExactDevice>(opened, numbers, binnings_, bins_));
+    devices_.push_back(std::make_unique<ExactDevice>(opened, plan.program.options, numbers, binnings_, bins_));
   compile_seconds_ = now() - start;
 }
 

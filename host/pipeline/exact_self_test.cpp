@@ -71,7 +71,8 @@ std::vector<ClrayFace> soup() {
   return faces;
 }
 
-void compare(const OpenedDevice& opened, const char* what, const std::vector<i64>& right, const std::vector<i64>& found) {
+void compare(const OpenedDevice& opened, const char* what, const std::vector<i64>& right,
+             const std::vector<i64>& found) {
   for (std::size_t k = 0; k < right.size(); ++k) {
     if (right[k] != found[k])
       throw Error(ErrorCode::device,
@@ -84,28 +85,28 @@ void compare(const OpenedDevice& opened, const char* what, const std::vector<i64
 }  // namespace
 
 void run_exact_self_test(OpenedDevice& opened, const std::string& source, const cl::Kernel& kernel,
-                         std::uint32_t lanes, std::uint32_t binnings) {
+                         const ExactNumbers& numbers) {
   const std::string what = "solved\n" + source;
   if (remembered(opened, what)) return;
   FaceGroup group;
   group.faces = soup();
-  for (std::size_t k = 0; k < group.faces.size() * lanes; ++k)
+  for (std::size_t k = 0; k < group.faces.size() * numbers.lanes; ++k)
     group.weights.push_back(0.25 + static_cast<double>(k % 7) / 8.0);
-  const std::uint64_t row = static_cast<std::uint64_t>(lanes) * (kBins + 2);
+  const std::uint64_t row = static_cast<std::uint64_t>(numbers.lanes) * (kBins + 2);
   std::vector<ClrayBinning> windows;
-  for (std::uint32_t n = 0; n < binnings; ++n) windows.push_back({-1.5, kBins / (3.0 + n), n * row, kBins});
+  for (std::uint32_t n = 0; n < numbers.binnings; ++n) windows.push_back({-1.5, kBins / (3.0 + n), n * row, kBins});
   ItemBatch batch;
   batch.tiles = {{-1.0, 0.1, -1.0, 1.0, 4.0, 1e-12, 0, kFaces}, {0.1, 1.0, -1.0, 1.0, 4.0, 1e-12, 0, kFaces}};
   for (std::uint32_t f = 0; f < kFaces; ++f) {
     batch.lists.push_back(f);
     for (const std::uint32_t tile : {0u, 1u}) batch.items.insert(batch.items.end(), {tile, f});
   }
-  std::vector<i64> sums(group.faces.size() * CLRAY_FACE_SUMS), bins(binnings * row);
-  ExactBuffers host{group.faces.data(), group.weights.data(), batch.tiles.data(), batch.lists.data(),
-                    batch.items.data(), windows.data(),       sums.data(),        bins.data(),
-                    nullptr};
-  for (std::uint32_t k = 0; k < batch.size(); ++k) exact_item_on_host(host, {lanes, binnings}, k, 0);
-  ExactDevice device(opened, kernel, {lanes, binnings}, windows, bins.size());
+  std::vector<i64> sums(group.faces.size() * CLRAY_FACE_SUMS), bins(numbers.binnings * row);
+  ExactBuffers host{group.faces.data(), group.weights.data(), batch.tiles.data(),
+                    batch.lists.data(), batch.items.data(),   windows.data(),
+                    sums.data(),        bins.data(),          nullptr};
+  for (std::uint32_t k = 0; k < batch.size(); ++k) exact_item_on_host(host, numbers, k, 0);
+  ExactDevice device(opened, kernel, numbers, windows, bins.size());
   std::vector<i64> found_sums(sums.size()), found_bins(bins.size());
   device.begin_group(group);
   device.launch_batch(&batch);

@@ -5,12 +5,13 @@
 
 #include "device/device_impl.hpp"
 #include "device/program.hpp"
+#include "exact/portable_faces.hpp"
 
 namespace clray {
 
 /// Tests a program of exact.cl, unless it passed on this device before. Throws Error(device) with the first sum that is
 /// wrong.
 void run_exact_self_test(OpenedDevice& opened, const std::string& source, const cl::Kernel& kernel,
-                         std::uint32_t lanes, std::uint32_t binnings);
+                         const ExactNumbers& numbers);
 
 }  // namespace clray

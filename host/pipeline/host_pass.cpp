@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <string>
 
-#include "clray/error.hpp"
 #include "body/host_opencl.hpp"
+#include "clray/error.hpp"
 #include "pipeline/pass_buffers.hpp"
 #include "shared/abi.h"
 #include "shared/elementary.h"

@@ -59,6 +59,7 @@ MethodChoice choose_method(const Scene& scene, const Geometry& geometry, const D
   if (t.method == Method::points) return {false, "points are asked for"};
   const std::string why = obstacle(scene, geometry, detector);
   if (t.method == Method::exact) {
+    if (t.rays != 0) throw Error(ErrorCode::input, "method = \"exact\" traces no rays: leave rays out", "trace.rays");
     if (!why.empty()) throw Error(ErrorCode::input, "method = \"exact\" is not possible: " + why, "trace.method");
     return {true, "asked for"};
   }

@@ -65,8 +65,11 @@ class Requests {
     for (std::size_t d = 0; d < scene_.detectors.size(); ++d) {
       if (!row(d).beam || is_grid(d)) continue;
       const bool in_parts = lanes_of(scene_, row(d)).front().share < 1.0;
-      const bool exact = choose_method(scene_, geometry_, scene_.detectors[d], instants_.size()).exact;
-      (exact ? solved : in_parts ? parts : r).detectors.push_back(static_cast<int>(d));
+      const MethodChoice choice = choose_method(scene_, geometry_, scene_.detectors[d], instants_.size());
+      PassRequest& goes_to = choice.exact ? solved : in_parts ? parts : r;
+      goes_to.detectors.push_back(static_cast<int>(d));
+      goes_to.method.push_back(shown_name(scene_.detectors[d]) + (choice.exact ? ", exact: " : ", points: ") +
+                               choice.why);
     }
     parts.apart = !r.detectors.empty();
     solved.exact = true;

@@ -44,8 +44,8 @@ double first_bound(const PassPlan& plan, std::size_t v) {
   return bound;
 }
 
-constexpr int kSumBits = 62 - 24;    // of a slice's 2^24 contributions, each below the limit
-constexpr int kExactSumBits = 61;    // the pieces of an exact pass have the beam's area at most, all together
+constexpr int kSumBits = 62 - 24;  // of a slice's 2^24 contributions, each below the limit
+constexpr int kExactSumBits = 61;  // the pieces of an exact pass have the beam's area at most, all together
 
 Scales scales_of(const Scene& scene, const Geometry& geometry, const PassPlan& plan) {
   Scales scales;
@@ -191,8 +191,7 @@ PassPlan plan_pass(const Scene& scene, const Geometry& geometry, PassRequest req
   plan.detectors = detectors_of(scene, geometry, plan);
   plan.layout = layout_of(plan, &plan.detectors);
   if (plan.request.exact) {
-    for (const Orientation& view : plan.request.orientations)
-      plan.motions.push_back(motions_of(scene, geometry, view));
+    for (const Orientation& view : plan.request.orientations) plan.motions.push_back(motions_of(scene, geometry, view));
   } else {
     plan.beams = stratified(
         std::move(plan.beams), scene, geometry, plan.request,
@@ -205,7 +204,8 @@ PassPlan plan_pass(const Scene& scene, const Geometry& geometry, PassRequest req
 
 std::vector<PassPlan> plan_passes(const Scene& scene, const Geometry& geometry) {
   std::vector<PassPlan> plans;
-  for (PassRequest& request : pass_requests(scene, geometry)) plans.push_back(plan_pass(scene, geometry, std::move(request)));
+  for (PassRequest& request : pass_requests(scene, geometry))
+    plans.push_back(plan_pass(scene, geometry, std::move(request)));
   return plans;
 }
 

@@ -24,9 +24,10 @@ struct PassRequest : BeamRequest {
   std::vector<int> detectors;         ///< indices into Scene::detectors
   std::size_t first_orientation = 0;  ///< where the orientations stand in Result::orientations
   std::vector<Lane> lanes;
-  bool grid = false;   ///< the views are a grid of light directions of a detector's own
-  bool apart = false;  ///< it is traced under light of its own, beside others under the scene's
-  bool exact = false;  ///< visibility is solved: no rays, one replicate
+  bool grid = false;                ///< the views are a grid of light directions of a detector's own
+  bool apart = false;               ///< it is traced under light of its own, beside others under the scene's
+  bool exact = false;               ///< visibility is solved: no rays, one replicate
+  std::vector<std::string> method;  ///< why its detectors are solved or sampled
   std::uint32_t replicates = 16;
 };
 
@@ -59,6 +60,7 @@ struct PathTraits {
 
 /// What a program is built of, and the reasons.
 struct Specialised {
+  std::string entry = "trace.cl";  ///< the kernel file that it is built from
   ProgramOptions options;
   std::vector<std::string> kept, left_out;
 };

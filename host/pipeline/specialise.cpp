@@ -3,12 +3,16 @@
 // and sums that the pass needs, and its sizes. What a scene does not need is not compiled.
 #include <algorithm>
 
+#include "pipeline/detector/room.hpp"
 #include "pipeline/plan.hpp"
 #include "scene/tables.hpp"
 
 namespace clray {
 namespace {
 
+// Fragments that a work-item of an exact pass has room for. Few need more, and the host finishes those; results do not
+// depend on it.
+constexpr std::uint64_t kWaiting = 24;
 constexpr std::uint64_t kFewKept = 24;  // numbers that a work-item keeps of a row where that is optional
 
 class Specialiser {
@@ -17,6 +21,8 @@ class Specialiser {
       : scene_(scene), geometry_(geometry), plan_(plan), all_(!scene.trace.specialise) {}
 
   Specialised run() {
+    out_.kept = plan_.request.method;
+    if (plan_.request.exact) return exact();
     tables();
     detectors();
     rays();
@@ -25,6 +31,20 @@ class Specialiser {
   }
 
  private:
+  // An exact pass has a program of its own (exact.cl), which knows faces and no surfaces.
+  Specialised exact() {
+    std::size_t binnings = 0;
+    for (const PassDetector& d : plan_.detectors)
+      binnings += room_of(table("detector")[static_cast<std::size_t>(d.row)].id).binning != nullptr;
+    out_.entry = "exact.cl";
+    define("CLRAY_LANES", plan_.request.lanes.size());
+    define("CLRAY_BINNINGS", binnings);
+    define("CLRAY_EXACT_STACK", kWaiting);
+    out_.kept.push_back("faces, tiles and their visible parts: visibility is solved");
+    out_.left_out.push_back("rays, their random numbers and replicates: nothing is sampled");
+    return std::move(out_);
+  }
+
   void define(const std::string& name, std::uint64_t value) { out_.options.defines[name] = std::to_string(value); }
 
   void decide(const char* name, bool needed, const std::string& what, const std::string& why_kept,

@@ -106,7 +106,8 @@ Result trace(const Scene& scene, Device& device, const TraceHooks& hooks) {
     const std::uint64_t per_point =
         plan.request.replicates * (plan.request.pixels ? static_cast<std::uint64_t>(size.width) * size.height : 1);
     const std::vector<std::uint64_t>& points = outcome.sums.points;
-    if (result.rays == 0 && !plan.request.exact) result.rays = *std::max_element(points.begin(), points.end()) * per_point;
+    if (result.rays == 0 && !plan.request.exact)
+      result.rays = *std::max_element(points.begin(), points.end()) * per_point;
     result.rays_total += outcome.rays_total;
     result.digest = digest_of(result.digest, plan, outcome.sums);
     result.errors.insert(result.errors.end(), outcome.errors.begin(), outcome.errors.end());
@@ -140,7 +141,7 @@ std::string kernel_source(const Scene& scene, Device& device) {
   const DeviceUse use(device);
   const Geometry geometry = build_geometry(scene);
   const std::vector<PassPlan> plans = plan_passes(scene, geometry);
-  return program_source(device.impl().devices.front(), "trace.cl", plans.front().program.options);
+  return program_source(device.impl().devices.front(), plans.front().program.entry, plans.front().program.options);
 }
 
 }  // namespace clray

@@ -36,7 +36,8 @@ struct Estimate {
 struct VectorEstimate {
   Vec3 value{0.0};
   Vec3 standard_error{0.0};
-  Vec3 relative_variance_of_variance{0.0};  ///< as in Estimate
+  Vec3 relative_variance_of_variance{0.0};                           ///< as in Estimate
+  double rounding_bound = std::numeric_limits<double>::quiet_NaN();  ///< of each component, as in Estimate
 };
 
 /// Which member of a run a record belongs to; empty names where there is only one.
@@ -192,7 +193,7 @@ struct Seconds {
 struct Result {
   DeviceInfo device;
   std::uint64_t seed = 0;
-  std::uint64_t rays = 0;        ///< per orientation, of the result (the confirmation's)
+  std::uint64_t rays = 0;        ///< per orientation, of the result (the confirmation's); 0: all numbers are exact
   std::uint64_t rays_total = 0;  ///< traced in all
   int replicates = 0;
   std::uint64_t digest = 0;  ///< of all integer sums: equal digests mean equal results
@@ -201,9 +202,9 @@ struct Result {
   double target_percent = 0.0;  ///< 95 % half-width over the value that was asked for; 0: none
   /// That of the result, the largest over all totals; NaN where all are zero.
   double reached_percent = std::numeric_limits<double>::quiet_NaN();
-  /// What ended the tracing: "target", "zero" (all totals are zero, so no target can be met), "rays" (as given),
-  /// "max_rays", "samples" (of a picture's search), "time limit" or "interrupt". If there were several passes, that of
-  /// the first that missed the target.
+  /// What ended the tracing: "exact" (nothing was sampled), "target", "zero" (all totals are zero, so no target can be
+  /// met), "rays" (as given), "max_rays", "samples" (of a picture's search), "time limit" or "interrupt". If there were
+  /// several passes, that of the first that missed the target.
   std::string stopped_by;
   double extent_m = 0.0;  ///< longest side of the box around the body, axes of the body frame
   MeshReport mesh;        ///< all meshes together

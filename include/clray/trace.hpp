@@ -20,7 +20,7 @@ enum class Method { automatic, exact, points };
 /// When to stop and how to sample; `clray --list trace` has the ranges. Rays, target or time end the run, whichever
 /// comes first. Without any of them it goes to 1 %, with at least 2^22 rays over all orientations together.
 struct TraceOptions {
-  int max_bounces = 1;                  ///< surface interactions
+  int max_bounces = 1;  ///< surface interactions
   Method method = Method::automatic;
   std::uint64_t rays = 0;               ///< primary rays per orientation, rounded up to 16·2^k; 0: not given
   double target_error_percent = 0.0;    ///< 95 % half-width over the value; 0: not given

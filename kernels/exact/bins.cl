@@ -28,9 +28,7 @@ static void histogram_add(const Histogram* h, i64 bin, f64 area) {
   }
 }
 
-CLRAY_FN i64 bin_of(const Histogram* h, f64 u) {
-  return u < 0.0 ? -1 : (u >= (f64)h->bins ? h->bins : (i64)floor(u));
-}
+CLRAY_FN i64 bin_of(const Histogram* h, f64 u) { return u < 0.0 ? -1 : (u >= (f64)h->bins ? h->bins : (i64)floor(u)); }
 
 /// One side of a piece, walked from the least u to the greatest.
 typedef struct Chain {

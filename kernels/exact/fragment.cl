@@ -8,6 +8,9 @@
 
 #define CLRAY_FRAGMENT_CORNERS 12u
 
+#define CLRAY_FRAGMENT_BLOCK 4u  // corners that are compared with a line at once
+
+/// The corners beyond the last, up to a whole block, repeat the first.
 typedef struct Fragment {
   f64 x[CLRAY_FRAGMENT_CORNERS], y[CLRAY_FRAGMENT_CORNERS];
   u32 corners;
@@ -46,11 +49,15 @@ CLRAY_FN u32 fragment_add(Fragment* f, f64 x, f64 y) {
   return 1u;
 }
 
-/// Leaves out a last corner that repeats the first, and everything where no area is left.
+/// Leaves out a last corner that repeats the first, and everything where no area is left; fills the last block.
 CLRAY_FN void fragment_close(Fragment* f) {
-  const u32 n = f->corners;
-  if (n > 1u && f->x[n - 1u] == f->x[0] && f->y[n - 1u] == f->y[0]) f->corners = n - 1u;
-  if (f->corners < 3u) f->corners = 0u;
+  u32 n = f->corners;
+  if (n > 1u && f->x[n - 1u] == f->x[0] && f->y[n - 1u] == f->y[0]) --n;
+  f->corners = n < 3u ? 0u : n;
+  for (; n % CLRAY_FRAGMENT_BLOCK != 0u; ++n) {
+    f->x[n] = f->x[0];
+    f->y[n] = f->y[0];
+  }
 }
 
 /// Cuts a fragment along a line. Both sides take the same new corners, so no area is lost between them. Returns 0 where

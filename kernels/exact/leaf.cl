@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// One face in one tile: the part of the face that no other face hides. What hides it is cut out of it, nearest first.
-// Fragments wait on a stack with the place in the tile's list from which others are still to be cut out of them, so no
-// lists of pieces are kept. Where the stack is full the work-item stops, and the host goes on after the pieces that it
-// has counted (host/pipeline/exact_pass.cpp).
+// One face in one tile: the part of the face that no other face hides. What hides it is cut out of it, the largest
+// faces first: they leave the least to cut, and of nested faces the last leaves nothing to the others. Fragments wait
+// on a stack with the place in the tile's list from which others are still to be cut out of them, so no lists of pieces
+// are kept. Where the stack is full the work-item stops, and the host goes on after the pieces that it has counted
+// (host/pipeline/exact_pass.cpp).
 #ifndef CLRAY_EXACT_LEAF_CL
 #define CLRAY_EXACT_LEAF_CL
 
@@ -10,10 +11,10 @@
 #include "exact/integrals.cl"
 #include "exact/occlusion.cl"
 
-#define CLRAY_MOST_CUT 7u         // corners of a fragment that is cut by four edges: more are halved first
-#define CLRAY_SLIVER 1e-15        // of the face's part in the tile: smaller pieces are left out
-#define CLRAY_ROUNDING 8.9e-16    // of the beam's size: what corners may be off
-#define CLRAY_SHORT_EDGE 0.1      // of the margin: a shorter edge has no direction
+#define CLRAY_MOST_CUT 7u       // corners of a fragment that is cut by four edges: more are halved first
+#define CLRAY_SLIVER 1e-15      // of the face's part in the tile: smaller pieces are left out
+#define CLRAY_ROUNDING 8.9e-16  // of the beam's size: what corners may be off
+#define CLRAY_SHORT_EDGE 0.1    // of the margin: a shorter edge has no direction
 
 /// What the work-items of an exact pass read and add to.
 typedef struct Exact {
@@ -34,10 +35,10 @@ CLRAY_FN u32 face_in_tile(const CLRAY_GLOBAL ClrayFace* face, const CLRAY_GLOBAL
   u32 room = 1u;
   f->corners = 0u;
   for (u32 i = 0; i < 3u; ++i) fragment_add(f, face->x[i], face->y[i]);
-  const Line lines[4] = {line_between(tile->x0, tile->y0, tile->x1, tile->y0),
-                         line_between(tile->x1, tile->y0, tile->x1, tile->y1),
-                         line_between(tile->x1, tile->y1, tile->x0, tile->y1),
-                         line_between(tile->x0, tile->y1, tile->x0, tile->y0)};
+  const Line lines[4] = {
+      line_between(tile->x0, tile->y0, tile->x1, tile->y0), line_between(tile->x1, tile->y0, tile->x1, tile->y1),
+      line_between(tile->x1, tile->y1, tile->x0, tile->y1), line_between(tile->x0, tile->y1, tile->x0, tile->y0)};
+  fragment_close(f);
   for (u32 k = 0; k < 4u && f->corners >= 3u; ++k) {
     room &= fragment_cut(f, lines[k], &other, &rest);
     *f = other;
@@ -45,28 +46,64 @@ CLRAY_FN u32 face_in_tile(const CLRAY_GLOBAL ClrayFace* face, const CLRAY_GLOBAL
   return room;
 }
 
-/// Whether every corner of a fragment lies outside one edge of a polygon, so that they do not overlap.
-CLRAY_FN u32 apart(const Fragment* f, const Fragment* polygon, f64 short_edge) {
-  for (u32 k = 0; k < polygon->corners; ++k) {
-    const u32 next = k + 1u == polygon->corners ? 0u : k + 1u;
-    const Line edge = line_between(polygon->x[k], polygon->y[k], polygon->x[next], polygon->y[next]);
-    if (fabs(edge.dx) + fabs(edge.dy) < short_edge) continue;
-    u32 outside = 1u;
-    for (u32 i = 0; i < f->corners && outside; ++i) outside = line_side(edge, f->x[i], f->y[i]) <= 0.0 ? 1u : 0u;
-    if (outside) return 1u;
+#define CLRAY_INSIDE 1u
+#define CLRAY_OUTSIDE 2u
+
+/// Whether a fragment has corners inside and outside a line. An edge of no length has everything inside.
+CLRAY_FN u32 fragment_sides(const Fragment* f, Line l, f64 short_edge) {
+  if (fabs(l.dx) + fabs(l.dy) < short_edge) return CLRAY_INSIDE;
+  f64 least[CLRAY_FRAGMENT_BLOCK], greatest[CLRAY_FRAGMENT_BLOCK];
+  for (u32 j = 0; j < CLRAY_FRAGMENT_BLOCK; ++j) least[j] = greatest[j] = line_side(l, f->x[j], f->y[j]);
+  for (u32 i = CLRAY_FRAGMENT_BLOCK; i < f->corners; i += CLRAY_FRAGMENT_BLOCK) {
+    for (u32 j = 0; j < CLRAY_FRAGMENT_BLOCK; ++j) {
+      const f64 side = line_side(l, f->x[i + j], f->y[i + j]);
+      least[j] = f64_min(least[j], side);
+      greatest[j] = f64_max(greatest[j], side);
+    }
   }
-  return 0u;
+  const f64 low = f64_min(f64_min(least[0], least[1]), f64_min(least[2], least[3]));
+  const f64 high = f64_max(f64_max(greatest[0], greatest[1]), f64_max(greatest[2], greatest[3]));
+  return (high > 0.0 ? CLRAY_INSIDE : 0u) | (low < 0.0 ? CLRAY_OUTSIDE : 0u);
 }
 
-/// The same of a face's triangle.
-CLRAY_FN u32 apart_from_face(const Fragment* f, const CLRAY_GLOBAL ClrayFace* face, f64 short_edge) {
+CLRAY_FN Line fragment_edge(const Fragment* f, u32 k) {
+  const u32 next = k + 1u == f->corners ? 0u : k + 1u;
+  return line_between(f->x[k], f->y[k], f->x[next], f->y[next]);
+}
+
+CLRAY_FN Line face_edge(const CLRAY_GLOBAL ClrayFace* face, u32 k) {
+  const u32 next = k == 2u ? 0u : k + 1u;
+  return line_between(face->x[k], face->y[k], face->x[next], face->y[next]);
+}
+
+#define CLRAY_APART 0x80000000u
+
+/// Which edges of a face cut a fragment (a bit each), or CLRAY_APART.
+CLRAY_FN u32 cutting_face_edges(const Fragment* f, const CLRAY_GLOBAL ClrayFace* face, f64 short_edge) {
+  u32 cutting = 0u;
   for (u32 k = 0; k < 3u; ++k) {
-    const u32 next = k == 2u ? 0u : k + 1u;
-    const Line edge = line_between(face->x[k], face->y[k], face->x[next], face->y[next]);
-    if (fabs(edge.dx) + fabs(edge.dy) < short_edge) continue;
-    u32 outside = 1u;
-    for (u32 i = 0; i < f->corners && outside; ++i) outside = line_side(edge, f->x[i], f->y[i]) <= 0.0 ? 1u : 0u;
-    if (outside) return 1u;
+    const u32 sides = fragment_sides(f, face_edge(face, k), short_edge);
+    if ((sides & CLRAY_INSIDE) == 0u) return CLRAY_APART;
+    if ((sides & CLRAY_OUTSIDE) != 0u) cutting |= 1u << k;
+  }
+  return cutting;
+}
+
+/// The same of a polygon.
+CLRAY_FN u32 cutting_edges(const Fragment* f, const Fragment* polygon, f64 short_edge) {
+  u32 cutting = 0u;
+  for (u32 k = 0; k < polygon->corners; ++k) {
+    const u32 sides = fragment_sides(f, fragment_edge(polygon, k), short_edge);
+    if ((sides & CLRAY_INSIDE) == 0u) return CLRAY_APART;
+    if ((sides & CLRAY_OUTSIDE) != 0u) cutting |= 1u << k;
+  }
+  return cutting;
+}
+
+/// Whether an edge of a fragment has a polygon outside.
+CLRAY_FN u32 outside_an_edge(const Fragment* f, const Fragment* polygon, f64 short_edge) {
+  for (u32 k = 0; k < f->corners; ++k) {
+    if ((fragment_sides(polygon, fragment_edge(f, k), short_edge) & CLRAY_INSIDE) == 0u) return 1u;
   }
   return 0u;
 }
@@ -75,35 +112,41 @@ CLRAY_FN u32 apart_from_face(const Fragment* f, const CLRAY_GLOBAL ClrayFace* fa
 #define CLRAY_CUT_DONE 1u
 #define CLRAY_CUT_FULL 2u
 
-/// Cuts a polygon out of a fragment; what is left waits. CLRAY_CUT_NOTHING: they do not overlap, the fragment is as it
-/// was. CLRAY_CUT_FULL: no room is left for the pieces.
-static u32 cut_out(const Fragment* f, const Fragment* polygon, f64 short_edge, f64 sliver2, Waiting* waiting,
-                   f64* lost) {
-  Fragment hidden = *f, inside, outside;
+/// Cuts a polygon out of a fragment along those of its edges that cut it; what is left waits. CLRAY_CUT_NOTHING: they
+/// do not overlap, the fragment is as it was. CLRAY_CUT_FULL: no room is left for the pieces.
+static u32 cut_out(const Fragment* f, const Fragment* polygon, u32 cutting, f64 short_edge, f64 sliver2,
+                   Waiting* waiting, f64* lost) {
+  Fragment buffers[2];
+  const Fragment* hidden = f;
   const u32 before = waiting->count;
   f64 dropped = 0.0;
+  u32 own = 0u;
   for (u32 k = 0; k < polygon->corners; ++k) {
-    const u32 next = k + 1u == polygon->corners ? 0u : k + 1u;
-    const Line edge = line_between(polygon->x[k], polygon->y[k], polygon->x[next], polygon->y[next]);
-    if (fabs(edge.dx) + fabs(edge.dy) < short_edge) continue;
-    if (!fragment_cut(&hidden, edge, &inside, &outside)) return CLRAY_CUT_FULL;
-    if (outside.corners != 0u) {
-      const f64 area2 = fragment_area2(&outside);
-      if (area2 > sliver2) {
-        if (waiting->count == waiting->room) return CLRAY_CUT_FULL;
-        outside.next = f->next;
-        waiting->fragment[waiting->count++] = outside;
-      } else {
-        dropped += fabs(area2);
-      }
-    }
-    if (inside.corners == 0u) {
+    if ((cutting >> k & 1u) == 0u) continue;
+    const Line edge = fragment_edge(polygon, k);
+    const u32 sides = fragment_sides(hidden, edge, short_edge);
+    if ((sides & CLRAY_INSIDE) == 0u) {
       waiting->count = before;
       return CLRAY_CUT_NOTHING;
     }
-    hidden = inside;
+    if ((sides & CLRAY_OUTSIDE) == 0u) continue;
+    if (waiting->count == waiting->room) return CLRAY_CUT_FULL;
+    Fragment* outside = waiting->fragment + waiting->count;
+    if (!fragment_cut(hidden, edge, buffers + own, outside)) return CLRAY_CUT_FULL;
+    if (outside->corners != 0u) {
+      const f64 area2 = fragment_area2(outside);
+      outside->next = f->next;
+      if (area2 > sliver2) ++waiting->count;
+      if (!(area2 > sliver2)) dropped += fabs(area2);
+    }
+    if (buffers[own].corners == 0u) {
+      waiting->count = before;
+      return CLRAY_CUT_NOTHING;
+    }
+    hidden = buffers + own;
+    own = 1u - own;
   }
-  if (fragment_area2(&hidden) <= sliver2) {
+  if (fragment_area2(hidden) <= sliver2) {
     waiting->count = before;
     return CLRAY_CUT_NOTHING;
   }
@@ -140,6 +183,8 @@ CLRAY_FN void halve(const Fragment* f, Fragment* a, Fragment* b) {
     const u32 k = i == f->corners ? 0u : i;
     fragment_add(b, f->x[k], f->y[k]);
   }
+  fragment_close(a);
+  fragment_close(b);
 }
 
 #define CLRAY_PIECE_VISIBLE 0u
@@ -156,17 +201,19 @@ static u32 cut_all(const Exact* g, const __global ClrayTile* tile, u32 own, f64 
   for (u32 k = f->next; k < tile->count; ++k) {
     const u32 other = g->lists[tile->first + k];
     const __global ClrayFace* front = g->faces + other;
-    if (front->nearest < farthest) return CLRAY_PIECE_VISIBLE;  // so are all that follow
-    if (other == own || front->box[0] >= e.x1 || front->box[1] <= e.x0 || front->box[2] >= e.y1 ||
-        front->box[3] <= e.y0)
+    if (other == own || front->nearest < farthest || front->box[0] >= e.x1 || front->box[1] <= e.x0 ||
+        front->box[2] >= e.y1 || front->box[3] <= e.y0)
       continue;
-    if (apart_from_face(f, front, short_edge)) continue;
+    u32 cutting = cutting_face_edges(f, front, short_edge);
+    if (cutting == CLRAY_APART) continue;
     f64 h[3];
     const u32 where = hides(front, face, tile->margin, h);
     if (where == CLRAY_NOWHERE) continue;
     Fragment polygon;
     hiding_part(front, where, h, &polygon);
-    if (polygon.corners == 0u || (where == CLRAY_PARTLY && apart(f, &polygon, short_edge))) continue;
+    if (polygon.corners == 0u) continue;
+    if (where == CLRAY_PARTLY) cutting = cutting_edges(f, &polygon, short_edge);
+    if (cutting == CLRAY_APART || outside_an_edge(f, &polygon, short_edge)) continue;
     if (f->corners > CLRAY_MOST_CUT) {
       if (waiting->count + 2u > waiting->room) return CLRAY_PIECE_FULL;
       f->next = k;
@@ -175,7 +222,7 @@ static u32 cut_all(const Exact* g, const __global ClrayTile* tile, u32 own, f64 
       return CLRAY_PIECE_GONE;
     }
     f->next = k + 1u;
-    const u32 cut = cut_out(f, &polygon, short_edge, sliver2, waiting, lost);
+    const u32 cut = cut_out(f, &polygon, cutting, short_edge, sliver2, waiting, lost);
     if (cut == CLRAY_CUT_NOTHING) continue;
     if (where == CLRAY_PARTLY)
       *lost = fma(2.0 * CLRAY_ROUNDING * tile->size * crossing_slope(front, h), extent_size(e), *lost);

@@ -183,7 +183,8 @@ typedef struct ClrayFace {
 #define CLRAY_FACE_PIECES 6
 #define CLRAY_FACE_SUMS 7
 
-/// A tile of the beam of a view, and the faces in it: `count` numbers from `first` on, nearest first.
+/// A tile of the beam of a view, and the faces in it: `count` numbers from `first` on, the largest
+/// first.
 typedef struct ClrayTile {
   f64 x0, x1, y0, y1;
   f64 size;    // of the beam

@@ -17,7 +17,7 @@ bool long_tests() {
 std::vector<Case> stability_cases() {
   std::vector<Case> all;
   for (const auto& some : {bitwise_cases(), geometry_cases(), aimed_cases(), surface_cases(), lobe_cases(), bin_cases(),
-                           photon_cases(), statistics_cases(), coverage_cases(), law_cases()})
+                           photon_cases(), statistics_cases(), coverage_cases(), law_cases(), exact_cases()})
     all.insert(all.end(), some.begin(), some.end());
   return all;
 }

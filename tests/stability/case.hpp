@@ -18,7 +18,7 @@ struct Outcome {
 };
 
 struct Case {
-  std::string area;  ///< "bitwise", "geometry", "surfaces", "bins", "statistics", "coverage", "laws"
+  std::string area;  ///< "bitwise", "geometry", "surfaces", "bins", "statistics", "coverage", "laws", "exact"
   std::string name;
   std::string must_hold;
   std::string tolerance;  ///< and where it comes from
@@ -43,6 +43,7 @@ std::vector<Case> photon_cases();
 std::vector<Case> statistics_cases();
 std::vector<Case> coverage_cases();
 std::vector<Case> law_cases();
+std::vector<Case> exact_cases();
 
 /// A sum of equal weights: each is rounded alike, by up to half of 2^-37 of the largest weight (docs/physics.md,
 /// section 7).

@@ -28,7 +28,11 @@ void delay_row(TableFile& table, const DelayResult& delay, std::size_t bin, bool
   const double width_ns = delay.bin_width_s * 1e9;
   table.cell((delay.first_bin_start_s + (static_cast<double>(bin) + 0.5) * delay.bin_width_s) * 1e9);
   table.cell(delay.bin_m2_per_sr[bin] / width_ns).cell(at(delay.bin_standard_error, bin) / width_ns);
-  table.cell(bin < delay.hits.size() ? delay.hits[bin] : std::uint64_t{0});
+  if (bin < delay.hits.size()) {
+    table.cell(delay.hits[bin]);
+  } else {
+    table.cell(std::string_view());  // an exact number needs no hits
+  }
   const bool resolved = bin < delay.resolved.size() && delay.resolved[bin];
   table.cell(std::uint64_t{resolved});
   table.cell(resolved ? std::nan("") : at(delay.bin_upper_bound, bin) / width_ns);
@@ -45,9 +49,12 @@ void delay_table(Writer& writer, const Group& group, const std::string& stem) {
                        std::string(photons ? "; photons_per_ns: expected at the station" : ""));
   if (!several) {
     const auto& delay = *group.front();
-    table.comment("total_m2_per_sr: " + number(delay.intensity_m2_per_sr.value) + " with standard error " +
-                  number(delay.intensity_m2_per_sr.standard_error) + ", of which below the first bin " +
-                  number(delay.below_m2_per_sr) + " and above the last " + number(delay.above_m2_per_sr));
+    const Estimate& a = delay.intensity_m2_per_sr;
+    table.comment("total_m2_per_sr: " + number(a.value) +
+                  (a.exact() ? ", exact but for rounding below " + number(a.rounding_bound)
+                             : " with standard error " + number(a.standard_error)) +
+                  ", of which below the first bin " + number(delay.below_m2_per_sr) + " and above the last " +
+                  number(delay.above_m2_per_sr));
   }
   table.comment("resolved: 0 where a bin was hit too seldom for its error to be trusted; it gets a 95 % upper_bound");
   std::vector<std::string> columns{"delay_ns",   "intensity_m2_per_sr_per_ns", "standard_error", "hits", "resolved",
@@ -148,24 +155,26 @@ Json delay_entry(const DelayResult& delay) {
   const auto& a = delay.intensity_m2_per_sr;
   std::size_t unresolved = 0;
   for (const auto resolved : delay.resolved) unresolved += !resolved;
-  return {{"intensity_m2_per_sr", a.value},
-          {"standard_error", a.standard_error},
-          {"confidence_95", {a.low, a.high}},
-          {"relative_variance_of_variance", a.relative_variance_of_variance},
-          {"cross_section_m2", 4.0 * constants::kPi * a.value},
-          {"cross_section_standard_error", 4.0 * constants::kPi * a.standard_error},
-          {"mean_delay_ns", delay.mean_delay_s.value * 1e9},
-          {"mean_delay_standard_error_ns", delay.mean_delay_s.standard_error * 1e9},
-          {"mean_delay_relative_variance_of_variance", delay.mean_delay_s.relative_variance_of_variance},
-          {"rms_width_ns", delay.rms_width_s.value * 1e9},
-          {"rms_width_standard_error_ns", delay.rms_width_s.standard_error * 1e9},
-          {"rms_width_relative_variance_of_variance", delay.rms_width_s.relative_variance_of_variance},
-          {"bins", delay.bin_m2_per_sr.size()},
-          {"bin_ns", delay.bin_width_s * 1e9},
-          {"first_bin_ns", delay.first_bin_start_s * 1e9},
-          {"unresolved_bins", unresolved},
-          {"below_window_m2_per_sr", delay.below_m2_per_sr},
-          {"above_window_m2_per_sr", delay.above_m2_per_sr}};
+  Json entry = method_of(a.rounding_bound);
+  entry.update({{"intensity_m2_per_sr", a.value},
+                {"standard_error", a.standard_error},
+                {"confidence_95", {a.low, a.high}},
+                {"relative_variance_of_variance", a.relative_variance_of_variance},
+                {"cross_section_m2", 4.0 * constants::kPi * a.value},
+                {"cross_section_standard_error", 4.0 * constants::kPi * a.standard_error},
+                {"mean_delay_ns", delay.mean_delay_s.value * 1e9},
+                {"mean_delay_standard_error_ns", delay.mean_delay_s.standard_error * 1e9},
+                {"mean_delay_relative_variance_of_variance", delay.mean_delay_s.relative_variance_of_variance},
+                {"rms_width_ns", delay.rms_width_s.value * 1e9},
+                {"rms_width_standard_error_ns", delay.rms_width_s.standard_error * 1e9},
+                {"rms_width_relative_variance_of_variance", delay.rms_width_s.relative_variance_of_variance},
+                {"bins", delay.bin_m2_per_sr.size()},
+                {"bin_ns", delay.bin_width_s * 1e9},
+                {"first_bin_ns", delay.first_bin_start_s * 1e9},
+                {"unresolved_bins", unresolved},
+                {"below_window_m2_per_sr", delay.below_m2_per_sr},
+                {"above_window_m2_per_sr", delay.above_m2_per_sr}});
+  return entry;
 }
 
 void delay_summary(SummaryEntries& entries) {

@@ -90,19 +90,21 @@ void write_spectrometer(Writer& writer) {
 }
 
 Json spectrometer_entry(const SpectrometerResult& record) {
-  return {{"low_nm", record.band.low_nm},
-          {"high_nm", record.band.high_nm},
-          {"intensity_m2_per_sr", record.intensity_m2_per_sr.value},
-          {"standard_error", record.intensity_m2_per_sr.standard_error},
-          {"confidence_95", {record.intensity_m2_per_sr.low, record.intensity_m2_per_sr.high}},
-          {"relative_variance_of_variance", record.intensity_m2_per_sr.relative_variance_of_variance},
-          {"source_W_m2", record.source_W_m2},
-          {"received_W_m2", record.received_W_m2},
-          {"received_standard_error", record.received_W_m2_standard_error},
-          {"magnitude_AB", record.magnitude_AB},
-          {"magnitude_Vega", record.magnitude_Vega},
-          {"magnitude_standard_error", record.magnitude_standard_error},
-          {"phase_angle_deg", record.phase_angle_rad * 180.0 / constants::kPi}};
+  Json entry = method_of(record.intensity_m2_per_sr.rounding_bound);
+  entry.update({{"low_nm", record.band.low_nm},
+                {"high_nm", record.band.high_nm},
+                {"intensity_m2_per_sr", record.intensity_m2_per_sr.value},
+                {"standard_error", record.intensity_m2_per_sr.standard_error},
+                {"confidence_95", {record.intensity_m2_per_sr.low, record.intensity_m2_per_sr.high}},
+                {"relative_variance_of_variance", record.intensity_m2_per_sr.relative_variance_of_variance},
+                {"source_W_m2", record.source_W_m2},
+                {"received_W_m2", record.received_W_m2},
+                {"received_standard_error", record.received_W_m2_standard_error},
+                {"magnitude_AB", record.magnitude_AB},
+                {"magnitude_Vega", record.magnitude_Vega},
+                {"magnitude_standard_error", record.magnitude_standard_error},
+                {"phase_angle_deg", record.phase_angle_rad * 180.0 / constants::kPi}});
+  return entry;
 }
 
 void spectrometer_summary(SummaryEntries& entries) {

@@ -4,7 +4,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+
+#include "text/text.hpp"
 
 namespace clray::io {
 
@@ -21,7 +24,15 @@ std::string record_name(const ResultKey& key, const Result& result) {
   return name;
 }
 
+/// An exact number with the digits that its rounding leaves.
+static std::string exact_number(double value, double bound) {
+  const double ratio = std::fabs(value) / bound;
+  const int digits = ratio > 1.0 ? static_cast<int>(std::floor(std::log10(std::min(ratio, 1e15)))) : 1;
+  return text::rounded(value, std::max(digits, 1));
+}
+
 std::string scaled(const Estimate& e, double scale) {
+  if (e.exact()) return exact_number(e.value * scale, e.rounding_bound * scale);
   return format_with_error(e.value * scale, e.standard_error * scale);
 }
 
@@ -34,6 +45,7 @@ std::string amount_with_interval(const Estimate& e, const std::string& unit) {
   const bool has_value = e.value != 0.0 && std::isfinite(e.value);
   const std::string percent =
       has_value ? fmt::format("{:.2g} %", 100.0 * 0.5 * (e.high - e.low) / std::fabs(e.value)) : "n/a";
+  if (e.exact()) return fmt::format("{}   (exact, rounding below {:.1g})", amount(e, 1.0, unit), e.rounding_bound);
   return amount(e, 1.0, unit) + "   (95 %: ±" + percent + ")";
 }
 

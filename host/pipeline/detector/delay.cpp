@@ -88,6 +88,12 @@ void delay_moments(const PassPlan& plan, const SumReader& read, std::size_t v, s
   }
   out->mean_delay_s = estimate_jackknife(mean_of(pooled), means);
   out->rms_width_s = estimate_jackknife(width_of(pooled), widths);
+  if (!plan.request.exact) return;
+  // Moments of tau, within [-1, 1], are off by no more than A is: d(m1/m0) <= 2 dA/A, and the variance by three times
+  // that.
+  const double off = 2.0 * read.rounding(v, l, c) / pooled[0], width = out->rms_width_s.value / to_s;
+  out->mean_delay_s.rounding_bound = off * to_s;
+  out->rms_width_s.rounding_bound = std::min(std::sqrt(3.0 * off), 1.5 * off / std::max(width, 1e-300)) * to_s;
 }
 
 double largest_weight(const RoomResults& x, std::size_t v, std::size_t l, std::size_t c) {
@@ -128,9 +134,10 @@ void delay_bins(const RoomResults& x, std::size_t v, std::size_t l, std::size_t 
     const bool resolved = exact || (hits >= 10 && 2 * replicates_hit >= replicates);
     out->bin_m2_per_sr.push_back(mean);
     const double spread = exact ? 0.0 : std::sqrt(squares / (count * (count - 1.0)));
-    const double of_hit = exact || hits == 0 ? 0.0 : error_of_agreement(replicates) * mean * count / static_cast<double>(hits);
+    const double of_hit =
+        exact || hits == 0 ? 0.0 : error_of_agreement(replicates) * mean * count / static_cast<double>(hits);
     out->bin_standard_error.push_back(!exact && agree(mean, spread) ? of_hit : spread);
-    out->hits.push_back(hits);
+    if (!exact) out->hits.push_back(hits);
     out->resolved.push_back(resolved);
     out->bin_upper_bound.push_back(resolved ? 0.0 : largest * poisson_upper95(hits) * share);
   }
@@ -224,8 +231,8 @@ void intensity_targets(const TargetContext& x, std::vector<Target>* targets) {
 
 }  // namespace
 
-const DetectorRoom kDelayRoom{"delay",       delay_settings, delay_path_bins, nullptr, delay_results, nullptr, nullptr,
-                              delay_binning};
+const DetectorRoom kDelayRoom{"delay",       delay_settings, delay_path_bins, nullptr,
+                              delay_results, nullptr,        nullptr,         delay_binning};
 const DetectorRoom kIntensityRoom{"intensity", nullptr, nullptr, intensity_targets, nullptr, nullptr, intensity_solved};
 
 }  // namespace clray
