@@ -2,6 +2,8 @@
 // Compiles the portable kernel files of all rows for the host (see portable_tables.hpp).
 #include "body/portable_tables.hpp"
 
+#include "clray/error.hpp"
+#include "scene/tables.hpp"
 #include "shared/elementary.h"
 
 namespace clray {
@@ -30,6 +32,15 @@ double surface_bound(const ClrayMaterial& material, const std::vector<double>& t
 double surface_weight(const ClrayMaterial& material, const std::vector<double>& tables, vec3 n, vec3 wi, vec3 wo) {
   const portable::BrdfAngles angles = portable::brdf_angles(n, wi, wo);
   return portable::brdf_eval(&material, tables.data(), angles) * angles.mu_o;
+}
+
+ReflectedMomentum reflected_momentum(const ClrayMaterial& material, const std::vector<double>& tables, double mu) {
+  const double reflectance = surface_reflectance(material, tables, mu);
+  const TableRow& model = table("brdf")[material.model];
+  if (model.delta) return {2.0 * mu * reflectance, -reflectance};  // 2(n·s)n − s
+  if (!model.even)
+    throw Error(ErrorCode::bug, "no closed form for the momentum of " + model.name, "reflected_momentum");
+  return {2.0 / 3.0 * reflectance, 0.0};  // ∫ f·mu·o dω of f = rho/π
 }
 
 double shape_support_of(int shape, const double* keys, const double direction[3]) {

@@ -20,6 +20,13 @@ double surface_bound(const ClrayMaterial& material, const std::vector<double>& t
 /// f·mu_o at a surface with unit normal n, of light from wi toward wo; 1/sr.
 double surface_weight(const ClrayMaterial& material, const std::vector<double>& tables, vec3 n, vec3 wi, vec3 wo);
 
+/// The mean momentum that a surface's reflected light takes along, per unit of arriving light: `normal` along the
+/// surface's normal and `source` along the direction to the source. Of models that are even or delta (brdf.def) alone.
+struct ReflectedMomentum {
+  double normal = 0.0, source = 0.0;
+};
+ReflectedMomentum reflected_momentum(const ClrayMaterial& material, const std::vector<double>& tables, double mu);
+
 /// max over the shape of x·direction in its local frame, m. `keys`: the row's values in order.
 double shape_support_of(int shape, const double* keys, const double direction[3]);
 /// Nearest hit of the local ray o + t·d with t > 0: true, t and the outward unit normal.

@@ -158,6 +158,8 @@ class Solver {
         if (add != nullptr) add({plan_, d, geometry_, solved}, &sums_);
       }
       sums_.points[solved.view] = 1;
+      const double unit = plan_.beams.area_m2[solved.view] / plan_.constants.unit_scale;
+      for (const VisibleFace& v : visible) sums_.area_rounding[solved.view] += v.rounding_m2 + unit;
     }
   }
 
@@ -195,8 +197,8 @@ void take_bins(const PassPlan& plan, const std::vector<ClrayBinning>& binnings, 
     for (std::uint64_t row = 0; row < shape.views * shape.lanes; ++row) {
       for (std::uint64_t c = 0; c < shape.connections; ++c) {
         for (std::uint64_t k = 0; k < block.width; ++k)
-          sums->values[block.offset + (row * shape.connections + c) * block.width + k] =
-              bins[b.offset + row * block.width + k];
+          sums->values.set(block.offset + (row * shape.connections + c) * block.width + k,
+                           bins[b.offset + row * block.width + k]);
       }
     }
   }
@@ -219,6 +221,7 @@ ExactPass::~ExactPass() = default;
 
 bool ExactPass::run(Sums* sums, const std::function<bool(double)>& keep_going) {
   *sums = Sums(plan_.layout);
+  sums->area_rounding.assign(plan_.beams.views.size(), 0.0);
   if (!Solver(plan_, geometry_, devices_, keep_going, sums).run()) return false;
   std::vector<i64> bins(bins_);
   for (auto& device : devices_) device->read_bins(&bins);

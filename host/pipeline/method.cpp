@@ -25,24 +25,47 @@ bool solvable(const TableRow& row) {
   return row.sums.empty() || room.solved != nullptr || room.binning != nullptr;
 }
 
-/// Why a detector's numbers cannot be exact; empty where they can.
-std::string obstacle(const Scene& scene, const Geometry& geometry, const DetectorSpec& detector) {
-  if (!solvable(table_row("detector", detector.kind))) return detector.kind + " follows scattered light";
-  if (scene.trace.max_bounces > 1) return "light is followed over several bounces";
-  for (const Material& m : scene.materials) {
-    if (table_row("brdf", m.model).delta) return fmt::format("material {} is a mirror", m.name);
+/// The first material of the scene and its variants of which `fits` is false, or null.
+template <class Fits>
+const Material* misfit(const Scene& scene, Fits fits) {
+  const auto wrong = [&](const std::vector<Material>& all) {
+    const auto found =
+        std::find_if(all.begin(), all.end(), [&](const Material& m) { return !fits(table_row("brdf", m.model)); });
+    return found == all.end() ? nullptr : &*found;
+  };
+  if (const Material* m = wrong(scene.materials)) return m;
+  for (const Variant& variant : scene.variants) {
+    if (const Material* m = wrong(variant.materials)) return m;
   }
-  for (const Variant& v : scene.variants) {
-    for (const Material& m : v.materials) {
-      if (table_row("brdf", m.model).delta) return fmt::format("variant {} has a mirror", v.name);
+  return nullptr;
+}
+
+/// What of surfaces and observers stands in the way of a detector's exact numbers; empty: nothing.
+std::string obstacle_to(const Scene& scene, const TableRow& row) {
+  if (row.connects) {
+    if (const Material* m = misfit(scene, [](const TableRow& model) { return !model.delta; }))
+      return fmt::format("material {} is a mirror", m->name);
+    for (const Observer& o : scene.observers) {
+      if (scene.trace.force_bistatic || !at_source(o, scene.source))
+        return fmt::format("observer {} is not at the source", o.name.empty() ? "of the scene" : o.name);
     }
   }
-  for (const Observer& o : scene.observers) {
-    if (scene.trace.force_bistatic || !at_source(o, scene.source))
-      return fmt::format("observer {} is not at the source", o.name);
+  if (row.scatters) {
+    // The momentum of the light that such surfaces send on is a closed form.
+    if (const Material* m = misfit(scene, [](const TableRow& model) { return model.even || model.delta; }))
+      return fmt::format("material {} reflects neither evenly nor as a mirror", m->name);
   }
-  if (!made_of_polygons(geometry)) return "a curved shape is in the scene";
   return {};
+}
+
+/// Why a detector's numbers cannot be exact; empty where they can.
+std::string obstacle(const Scene& scene, const Geometry& geometry, const DetectorSpec& detector) {
+  const TableRow& row = table_row("detector", detector.kind);
+  if (!solvable(row)) return detector.kind + " follows light that cannot be solved";
+  if (scene.trace.max_bounces > 1) return "light is followed over several bounces";
+  const std::string why = obstacle_to(scene, row);
+  if (!why.empty()) return why;
+  return made_of_polygons(geometry) ? "" : "a curved shape is in the scene";
 }
 
 bool much_dearer(const Geometry& geometry, std::size_t views) {
@@ -69,7 +92,7 @@ MethodChoice choose_method(const Scene& scene, const Geometry& geometry, const D
     return {false, fmt::format("{} faces in {} views would take much longer than rays; --method exact solves them",
                                geometry.primitives.size(), views)};
   }
-  return {true, "one reflection from flat faces, seen from where the light comes"};
+  return {true, "one reflection from flat faces"};
 }
 
 }  // namespace clray

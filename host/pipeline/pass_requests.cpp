@@ -61,35 +61,47 @@ class Requests {
   void beam() {
     PassRequest r = request("trace");
     for (std::size_t o = 0; o < scene_.observers.size(); ++o) r.observers.push_back(static_cast<int>(o));
-    PassRequest parts = r, solved = r;
+    PassRequest solved = exact(r);
+    PassRequest parts = r, solved_parts = solved;
     for (std::size_t d = 0; d < scene_.detectors.size(); ++d) {
       if (!row(d).beam || is_grid(d)) continue;
       const bool in_parts = lanes_of(scene_, row(d)).front().share < 1.0;
       const MethodChoice choice = choose_method(scene_, geometry_, scene_.detectors[d], instants_.size());
-      PassRequest& goes_to = choice.exact ? solved : in_parts ? parts : r;
-      goes_to.detectors.push_back(static_cast<int>(d));
-      goes_to.method.push_back(shown_name(scene_.detectors[d]) + (choice.exact ? ", exact: " : ", points: ") +
-                               choice.why);
+      PassRequest& points = in_parts ? parts : r;
+      add_detector(d, choice, choice.exact ? (in_parts ? solved_parts : solved) : points);
     }
-    parts.apart = !r.detectors.empty();
-    solved.exact = true;
-    solved.replicates = 1;
-    solved.phase = "exact";
-    for (const PassRequest& each : {solved, r, parts}) {
+    parts.apart = !r.detectors.empty() || !solved.detectors.empty();
+    solved_parts.apart = parts.apart;
+    for (const PassRequest& each : {solved, solved_parts, r, parts}) {
       if (!each.detectors.empty()) add(each, kMostLanes);
     }
+  }
+
+  static PassRequest exact(PassRequest request) {
+    request.exact = true;
+    request.replicates = 1;
+    request.phase = "exact";
+    return request;
+  }
+
+  void add_detector(std::size_t d, const MethodChoice& choice, PassRequest& request) const {
+    const DetectorSpec& spec = scene_.detectors[d];
+    request.detectors.push_back(static_cast<int>(d));
+    request.method.push_back(shown_name(spec) + (choice.exact ? ", exact: " : ", points: ") + choice.why);
   }
 
   void grid(std::size_t d) {
     const DetectorSpec& spec = scene_.detectors[d];
     PassRequest r = request("sun directions");
-    r.detectors = {static_cast<int>(d)};
     r.observers = {0};
     r.grid = r.apart = true;
     r.orientations = views_of_grid(scene_, static_cast<int>(detector_value(spec, "azimuth_steps")),
                                    static_cast<int>(detector_value(spec, "elevation_steps")));
     r.first_orientation = next_orientation_;
     next_orientation_ += r.orientations.size();
+    const MethodChoice choice = choose_method(scene_, geometry_, spec, r.orientations.size());
+    if (choice.exact) r = exact(r);
+    add_detector(d, choice, r);
     add(r, kMostLanes);
   }
 

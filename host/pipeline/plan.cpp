@@ -45,6 +45,7 @@ double first_bound(const PassPlan& plan, std::size_t v) {
 }
 
 constexpr int kSumBits = 62 - 24;  // of a slice's 2^24 contributions, each below the limit
+constexpr int kExactUnitBits = 58;
 constexpr int kExactSumBits = 61;  // the pieces of an exact pass have the beam's area at most, all together
 
 Scales scales_of(const Scene& scene, const Geometry& geometry, const PassPlan& plan) {
@@ -79,7 +80,7 @@ void set_scales(const Scales& scales, std::vector<ClrayView>* views) {
 
 ClrayPass constants_of(const Scene& scene, const PassPlan& plan) {
   ClrayPass k{};
-  k.unit_scale = std::ldexp(1.0, CLRAY_UNIT_BITS);
+  k.unit_scale = std::ldexp(1.0, plan.request.exact ? kExactUnitBits : CLRAY_UNIT_BITS);
   for (int i = 0; i < 3; ++i) k.reference[i] = scene.reference_point[i];
   k.inv_lever_per_m = 1.0 / plan.scales.lever_m;
   k.key0 = static_cast<std::uint32_t>(scene.trace.seed);

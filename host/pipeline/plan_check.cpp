@@ -28,7 +28,7 @@ void check_windows(const Scene& scene) {
   const auto found = std::find_if(scene.detectors.begin(), scene.detectors.end(), follows_the_body);
   if (found == scene.detectors.end()) return;
   const Geometry geometry = build_geometry(scene);
-  for (PassRequest& request : pass_requests(scene)) {
+  for (PassRequest& request : pass_requests(scene, geometry)) {
     const PassPlan plan = plan_pass(scene, geometry, std::move(request), false);
     if (const std::string fault = memory_fault(bytes_of(plan.layout)); !fault.empty())
       throw Error(ErrorCode::input, "bin_ps: " + fault, "detector " + shown_name(*found));

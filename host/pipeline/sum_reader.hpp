@@ -38,6 +38,8 @@ class SumReader {
     const SumShape& shape = plan_.layout.shape;
     return sums_.rounding[(view * shape.lanes + lane) * shape.connections + c];
   }
+  /// Of an exact pass: a bound of the rounding of the lit area, m².
+  double area_rounding(std::size_t view) const { return sums_.area_rounding[view]; }
   /// A weight's sum without its area: of pixels, radiance over irradiance times the points.
   double weight(std::uint32_t block, std::size_t view, std::size_t lane, std::uint32_t r, std::uint64_t k) const {
     return static_cast<double>(sums_.values[at(plan_.layout.blocks[block], view, lane, 0, r) + k]) * weight_unit(view);

@@ -56,6 +56,7 @@ struct Sums {
   std::vector<std::uint64_t> points;                              ///< of each view, per replicate (and pixel)
   /// Of exact passes: a bound of the rounding of A in m²/sr, of each view, lane and connection.
   std::vector<double> rounding;
+  std::vector<double> area_rounding;  ///< of exact passes: that of the lit area, m², of each view
 
   Sums() = default;
   /// Zeros for every view.

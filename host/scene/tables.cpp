@@ -82,10 +82,11 @@ std::string next_word(const std::string& text, std::size_t* at) {
 
 void parse_traits(const std::string& traits, TableRow* row) {
   const std::pair<const char*, bool TableRow::*> known[] = {
-      {"delta", &TableRow::delta}, {"bounded", &TableRow::bounded},   {"flat", &TableRow::flat},
-      {"faces", &TableRow::faces}, {"file", &TableRow::file},         {"beam", &TableRow::beam},
-      {"pixel", &TableRow::pixel}, {"connects", &TableRow::connects}, {"scatters", &TableRow::scatters},
-      {"inner", &TableRow::inner}, {"whole", &TableRow::whole},       {"mirrors", &TableRow::mirrors}};
+      {"delta", &TableRow::delta},       {"even", &TableRow::even},   {"bounded", &TableRow::bounded},
+      {"flat", &TableRow::flat},         {"faces", &TableRow::faces}, {"file", &TableRow::file},
+      {"beam", &TableRow::beam},         {"pixel", &TableRow::pixel}, {"connects", &TableRow::connects},
+      {"scatters", &TableRow::scatters}, {"inner", &TableRow::inner}, {"whole", &TableRow::whole},
+      {"mirrors", &TableRow::mirrors}};
   std::size_t at = 0;
   for (std::string word = next_word(traits, &at); !word.empty(); word = next_word(traits, &at)) {
     const auto trait = std::find_if(std::begin(known), std::end(known), [&](const auto& k) { return k.first == word; });

@@ -52,6 +52,7 @@ struct TableRow {
   std::vector<TableSum> sums;
   // Traits, see the heads of the .def files.
   bool delta = false;    ///< models: an ideal reflection
+  bool even = false;     ///< models: f is the same in all directions
   bool bounded = false;  ///< models: no weight exceeds the bound of a first bounce
   bool flat = false;     ///< shapes: every face lies in a plane
   bool faces = false;    ///< shapes: made of triangles

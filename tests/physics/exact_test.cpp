@@ -249,3 +249,51 @@ TEST_CASE("automatic takes the exact method where it can, and rays where they ar
   rays(scene, 14);
   CHECK(!total(run(scene)).exact());
 }
+
+TEST_CASE("force and torque on plates and boxes against closed forms, even and mirroring") {
+  const clray::Vec3 s = toward(0.7, 0.4), n(0.0, 0.0, 1.0);
+  const double mu = s.z, area = 2.0 * mu, rho = 0.6;
+  for (const bool shiny : {false, true}) {
+    CAPTURE(shiny);
+    clray::Scene scene = scene_of(moved(plate_mesh(2.0, 1.0), {0.5, -0.25, 0.125}), shiny ? mirror(rho) : lambert(rho));
+    monostatic(scene, s);
+    detect(scene, "pressure");
+    const clray::Result result = solve(scene);
+    const clray::PressureResult& p = result.pressure.at(0);
+    const clray::Vec3 sent = shiny ? rho * (2.0 * mu * n - s) : 2.0 / 3.0 * rho * n;
+    const clray::Vec3 force = area * (-s - sent), r(0.5, -0.25, 0.125);
+    const clray::Vec3 torque(r.y * force.z - r.z * force.y, r.z * force.x - r.x * force.z,
+                             r.x * force.y - r.y * force.x);
+    for (int k = 0; k < 3; ++k) {
+      CHECK(std::fabs(p.coefficient_m2.value[k] - force[k]) <= kExact * area);
+      CHECK(std::fabs(p.torque_coefficient_m3.value[k] - torque[k]) <= kExact * area);
+      CHECK(p.coefficient_m2.standard_error[k] == 0.0);
+    }
+    CHECK(p.coefficient_m2.rounding_bound < 1e-11 * area);
+    CHECK(p.absorbed_m2.value == relative((1.0 - rho) * area).epsilon(kExact));
+    const clray::EnergyBooks& books = result.energy.at(0);
+    CHECK(books.incident_m2.value == relative(area).epsilon(kExact));
+    CHECK(std::isnan(books.truncated_m2.value));
+  }
+}
+
+TEST_CASE("a grid of Sun directions on a body that hides parts of itself agrees with points") {
+  clray::Scene scene =
+      scene_of(merged({box_mesh(1.0, 1.0, 2.0), moved(plate_mesh(3.0, 1.0), {2.25, 0.0, 0.125})}), lambert(0.4));
+  scene.reference_point = {0.1, 0.2, 0.3};
+  detect(scene, "pressure", {{"azimuth_steps", 6.0}, {"elevation_steps", 5.0}, {"thermal", 1.0}});
+  const clray::Result exact = solve(scene);
+  rays(scene, 16);
+  const clray::Result points = run(scene);
+  REQUIRE(points.pressure.size() == exact.pressure.size());
+  for (std::size_t k = 0; k < exact.pressure.size(); ++k) {
+    const clray::PressureResult &e = exact.pressure[k], &p = points.pressure[k];
+    CHECK(e.sun == p.sun);
+    for (int axis = 0; axis < 3; ++axis) {
+      check_component(p.coefficient_m2.value[axis], p.coefficient_m2.standard_error[axis], e.coefficient_m2.value[axis],
+                      1.0, 0.02, "force");
+      check_component(p.torque_coefficient_m3.value[axis], p.torque_coefficient_m3.standard_error[axis],
+                      e.torque_coefficient_m3.value[axis], 1.0, 0.05, "torque");
+    }
+  }
+}

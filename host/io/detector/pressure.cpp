@@ -221,23 +221,25 @@ void write_pressure(Writer& writer) {
 Json pressure_entry(const PressureResult& record, const Scene& scene) {
   const auto& c = record.coefficient_m2;
   const auto& t = record.torque_coefficient_m3;
-  Json entry{{"sun", vector(record.sun)},
-             {"low_nm", record.band.low_nm},
-             {"high_nm", record.band.high_nm},
-             {"source_W_m2", record.source_W_m2},
-             {"force_N_per_W_m2", vector(c.value, 1.0 / constants::kLightSpeed_m_s)},
-             {"force_standard_error", vector(c.standard_error, 1.0 / constants::kLightSpeed_m_s)},
-             {"torque_Nm_per_W_m2", vector(t.value, 1.0 / constants::kLightSpeed_m_s)},
-             {"torque_standard_error", vector(t.standard_error, 1.0 / constants::kLightSpeed_m_s)},
-             {"force_N_at_1361_W_m2", vector(c.value, constants::kSolarConstant_W_m2 / constants::kLightSpeed_m_s)},
-             {"torque_Nm_at_1361_W_m2", vector(t.value, constants::kSolarConstant_W_m2 / constants::kLightSpeed_m_s)},
-             {"coefficient_m2", vector(c.value)},
-             {"coefficient_standard_error", vector(c.standard_error)},
-             {"coefficient_relative_variance_of_variance", vector(c.relative_variance_of_variance)},
-             {"torque_coefficient_m3", vector(t.value)},
-             {"torque_coefficient_standard_error", vector(t.standard_error)},
-             {"torque_coefficient_relative_variance_of_variance", vector(t.relative_variance_of_variance)},
-             {"absorbed_m2", value_and_error(record.absorbed_m2)}};
+  Json entry = method_of(c.rounding_bound);
+  entry.update(
+      {{"sun", vector(record.sun)},
+       {"low_nm", record.band.low_nm},
+       {"high_nm", record.band.high_nm},
+       {"source_W_m2", record.source_W_m2},
+       {"force_N_per_W_m2", vector(c.value, 1.0 / constants::kLightSpeed_m_s)},
+       {"force_standard_error", vector(c.standard_error, 1.0 / constants::kLightSpeed_m_s)},
+       {"torque_Nm_per_W_m2", vector(t.value, 1.0 / constants::kLightSpeed_m_s)},
+       {"torque_standard_error", vector(t.standard_error, 1.0 / constants::kLightSpeed_m_s)},
+       {"force_N_at_1361_W_m2", vector(c.value, constants::kSolarConstant_W_m2 / constants::kLightSpeed_m_s)},
+       {"torque_Nm_at_1361_W_m2", vector(t.value, constants::kSolarConstant_W_m2 / constants::kLightSpeed_m_s)},
+       {"coefficient_m2", vector(c.value)},
+       {"coefficient_standard_error", vector(c.standard_error)},
+       {"coefficient_relative_variance_of_variance", vector(c.relative_variance_of_variance)},
+       {"torque_coefficient_m3", vector(t.value)},
+       {"torque_coefficient_standard_error", vector(t.standard_error)},
+       {"torque_coefficient_relative_variance_of_variance", vector(t.relative_variance_of_variance)},
+       {"absorbed_m2", value_and_error(record.absorbed_m2)}});
   for (std::size_t i = 0; i < record.component_m2.size(); ++i) {
     Json share{{"name", i < scene.components.size() ? scene.components[i].name : ""},
                {"coefficient_m2", vector(record.component_m2[i].value)},
@@ -281,10 +283,7 @@ std::string force_table(const Result& result) {
   Columns table;
   table.add({"pressure", "", "x", "y", "z"});
   const auto three = [&](const std::string& name, const char* what, const VectorEstimate& v, double scale) {
-    const auto cell = [&](int axis) {
-      return format_with_error(v.value[axis] * scale, v.standard_error[axis] * scale);
-    };
-    table.add({name, what, cell(0), cell(1), cell(2)});
+    table.add({name, what, scaled(v, 0, scale), scaled(v, 1, scale), scaled(v, 2, scale)});
   };
   for (const auto& p : result.pressure) {
     three(record_name(p.key, result), "force coefficient C (m²)", p.coefficient_m2, 1.0);
@@ -298,9 +297,9 @@ void show_pressure(const Result& result, ResultText* text) {
   if (result.pressure.empty()) return;
   text->tables += result.pressure.size() > kMostRows / 3 ? force_span(result) : force_table(result);
   for (const auto& p : result.pressure) {
-    const Vec3 &c = p.coefficient_m2.value, &e = p.coefficient_m2.standard_error;
-    text->totals += fmt::format("{}: C = {}, {}, {} m²\n", record_name(p.key, result), format_with_error(c.x, e.x),
-                                format_with_error(c.y, e.y), format_with_error(c.z, e.z));
+    const VectorEstimate& c = p.coefficient_m2;
+    text->totals += fmt::format("{}: C = {}, {}, {} m²\n", record_name(p.key, result), scaled(c, 0, 1.0),
+                                scaled(c, 1, 1.0), scaled(c, 2, 1.0));
   }
 }
 

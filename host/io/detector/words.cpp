@@ -27,13 +27,21 @@ std::string record_name(const ResultKey& key, const Result& result) {
 /// An exact number with the digits that its rounding leaves.
 static std::string exact_number(double value, double bound) {
   const double ratio = std::fabs(value) / bound;
-  const int digits = ratio > 1.0 ? static_cast<int>(std::floor(std::log10(std::min(ratio, 1e15)))) : 1;
-  return text::rounded(value, std::max(digits, 1));
+  if (!(ratio > 1.0)) return "0";
+  return text::rounded(value, std::max(1, static_cast<int>(std::floor(std::log10(std::min(ratio, 1e15))))));
 }
 
 std::string scaled(const Estimate& e, double scale) {
   if (e.exact()) return exact_number(e.value * scale, e.rounding_bound * scale);
   return format_with_error(e.value * scale, e.standard_error * scale);
+}
+
+std::string scaled(const VectorEstimate& v, int axis, double scale) {
+  Estimate e;
+  e.value = v.value[axis];
+  e.standard_error = v.standard_error[axis];
+  e.rounding_bound = v.rounding_bound;
+  return scaled(e, scale);
 }
 
 std::string amount(const Estimate& e, double scale, const std::string& unit) {

@@ -18,8 +18,10 @@ std::string more_rows(std::size_t count);
 /// "delay, observer, variant, band, #2".
 std::string record_name(const ResultKey& key, const Result& result);
 
-/// "1.23 ± 0.04", of a scaled estimate.
+/// "1.23 ± 0.04", of a scaled estimate; an exact one has the digits that its rounding leaves.
 std::string scaled(const Estimate& e, double scale);
+/// The same of a component (0 … 2) of a vector.
+std::string scaled(const VectorEstimate& v, int axis, double scale);
 
 /// The same with a unit.
 std::string amount(const Estimate& e, double scale, const std::string& unit);

@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 
+#include "body/portable_tables.hpp"
 #include "pipeline/detector/room.hpp"
 #include "pipeline/detector/rooms.hpp"
 #include "pipeline/estimate.hpp"
@@ -33,7 +36,29 @@ EnergyBooks books_of(const RoomResults& x, const LaneRecord& record) {
     for (double& m : mean) m /= static_cast<double>(views);
     *entries[which] = estimate_total(mean, rays);
   }
+  if (x.plan.request.exact) e.truncated_m2.value = std::numeric_limits<double>::quiet_NaN();  // not followed, not known
   return e;
+}
+
+/// What a view's faces receive, absorb and send on. Where the last goes is not followed: it is all in `reflected`.
+void books_solved(const SolvedContext& x, Sums* sums) {
+  const SumShape& shape = x.plan.layout.shape;
+  const SumBlock& block = x.plan.layout.blocks[x.detector.first_block];
+  const double scale = x.plan.constants.unit_scale / x.plan.beams.area_m2[x.solved.view];
+  for (std::size_t l = 0; l < shape.lanes; ++l) {
+    const std::uint64_t row = block.offset + (x.solved.view * shape.lanes + l) * block.width;
+    for (std::size_t f = 0; f < x.solved.visible.size(); ++f) {
+      const FaceOrigin& origin = x.solved.beam.origins[f];
+      const std::uint32_t material = x.geometry.primitives[origin.primitive].material;
+      const ClrayMaterial& m = x.plan.materials.rows[l * x.plan.materials.columns + material];
+      const Sum received = std::llrint(x.solved.visible[f].area_m2 * scale);
+      const double reflectance = origin.lit ? surface_reflectance(m, x.plan.materials.tables, origin.mu) : 0.0;
+      const Sum sent = std::llrint(x.solved.visible[f].area_m2 * reflectance * scale);
+      sums->values.add(row + CLRAY_BOOK_INCIDENT, received);
+      sums->values.add(row + CLRAY_BOOK_REFLECTED, sent);
+      sums->values.add(row + CLRAY_BOOK_ABSORBED, received - sent);
+    }
+  }
 }
 
 void books_results(const RoomResults& x) {
@@ -61,6 +86,6 @@ void no_targets(const TargetContext&, std::vector<Target>*) {}
 
 }  // namespace
 
-const DetectorRoom kBooksRoom{"books", nullptr, nullptr, no_targets, books_results};
+const DetectorRoom kBooksRoom{"books", nullptr, nullptr, no_targets, books_results, nullptr, books_solved, nullptr};
 
 }  // namespace clray

@@ -211,7 +211,7 @@ void intensity_solved(const SolvedContext& x, Sums* sums) {
     }
     for (std::size_t c = 0; c < shape.connections; ++c) {
       const std::size_t row = (x.solved.view * shape.lanes + l) * shape.connections + c;
-      for (std::size_t k = 0; k < 3; ++k) sums->values[block.offset + 3 * row + k] = moments[k];
+      for (std::size_t k = 0; k < 3; ++k) sums->values.set(block.offset + 3 * row + k, moments[k]);
       sums->rounding[row] = rounding;
     }
   }

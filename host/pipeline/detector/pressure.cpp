@@ -3,6 +3,7 @@
 // section 4).
 #include <cmath>
 
+#include "body/portable_tables.hpp"
 #include "pipeline/detector/books.hpp"
 #include "pipeline/detector/room.hpp"
 #include "pipeline/detector/rooms.hpp"
@@ -12,7 +13,57 @@
 namespace clray {
 namespace {
 
-constexpr std::uint64_t kPushes = 6;  // of a component: force (3), torque (3)
+constexpr std::uint64_t kPushes = 6;   // of a component: force (3), torque (3)
+constexpr std::uint32_t kThermal = 2;  // key
+
+/// What one unit of light that a face receives does to it: the momentum that it hands over, less that of what is
+/// reflected, and of heat that goes along the normal.
+vec3 push_of(const SolvedContext& x, std::size_t face, std::size_t lane) {
+  const ClrayFace& f = x.solved.beam.faces[face];
+  const FaceOrigin& origin = x.solved.beam.origins[face];
+  const std::uint32_t material = x.geometry.primitives[origin.primitive].material;
+  const ClrayMaterial& m = x.plan.materials.rows[lane * x.plan.materials.columns + material];
+  const vec3 n = v3(f.normal[0], f.normal[1], f.normal[2]), s = x.solved.beam.toward;
+  ReflectedMomentum sent;
+  double reflectance = 0.0;
+  if (origin.lit) {
+    sent = reflected_momentum(m, x.plan.materials.tables, origin.mu);
+    reflectance = surface_reflectance(m, x.plan.materials.tables, origin.mu);
+  }
+  double along_normal = -sent.normal;
+  if (x.detector.settings[kThermal] != 0.0) along_normal -= 2.0 / 3.0 * (1.0 - reflectance) * m.emissivity;
+  return v3_fma(along_normal, n, v3_scale(-1.0 - sent.source, s));
+}
+
+/// Where the visible part of a face has its centre, times its area; from the reference point.
+vec3 lever_of(const SolvedContext& x, std::size_t face) {
+  const ClrayFace& f = x.solved.beam.faces[face];
+  const VisibleFace& v = x.solved.visible[face];
+  const BeamFaces& beam = x.solved.beam;
+  const double *r = x.plan.constants.reference, *c = x.geometry.centre.data();
+  const vec3 corner = v3(f.body[0] + (c[0] - r[0]), f.body[1] + (c[1] - r[1]), f.body[2] + (c[2] - r[2]));
+  const vec3 across = v3_fma(v.x_m3, beam.axis_x, v3_fma(v.y_m3, beam.axis_y, v3_scale(v.depth_m3, beam.toward)));
+  return v3_fma(v.area_m2, corner, across);
+}
+
+/// Force and torque of a view, from its visible faces.
+void pressure_solved(const SolvedContext& x, Sums* sums) {
+  const SumShape& shape = x.plan.layout.shape;
+  const SumBlock& block = x.plan.layout.blocks[x.detector.first_block];
+  const double scale = x.plan.constants.unit_scale / x.plan.beams.area_m2[x.solved.view];
+  for (std::size_t l = 0; l < shape.lanes; ++l) {
+    const std::uint64_t row = block.offset + (x.solved.view * shape.lanes + l) * block.width;
+    for (std::size_t f = 0; f < x.solved.visible.size(); ++f) {
+      const double area = x.solved.visible[f].area_m2;
+      if (area == 0.0) continue;
+      const vec3 push = push_of(x, f, l);
+      const vec3 torque = v3_cross(v3_scale(x.plan.constants.inv_lever_per_m, lever_of(x, f)), push);
+      const double values[kPushes] = {area * push.x, area * push.y, area * push.z, torque.x, torque.y, torque.z};
+      const std::uint64_t own = row + kPushes * x.geometry.primitives[x.solved.beam.origins[f].primitive].component;
+      for (std::uint64_t k = 0; k < kPushes; ++k) sums->values.add(own + k, std::llrint(values[k] * scale));
+    }
+  }
+}
 
 /// Force (k = 0 … 2, m²) or torque (3 … 5, m³) of components first … last - 1 in a record's light, per replicate.
 std::vector<double> push(const PassPlan& plan, const PassDetector& d, const SumReader& read, std::size_t v,
@@ -36,6 +87,10 @@ VectorEstimate vector_of(const RoomResults& x, std::size_t v, const LaneRecord& 
     out.standard_error[axis] = e.standard_error;
     out.relative_variance_of_variance[axis] = e.relative_variance_of_variance;
   }
+  if (x.plan.request.exact) {
+    // Light hands over at most twice its momentum, and five thirds of it with heat.
+    out.rounding_bound = 2.0 * x.read.area_rounding(v) * (k >= 3 ? x.plan.scales.lever_m : 1.0);
+  }
   return out;
 }
 
@@ -53,6 +108,7 @@ PressureResult pressure_record(const RoomResults& x, std::size_t v, const LaneRe
     p.component_m3.push_back(vector_of(x, v, record, k, k + 1, 3));
   }
   p.absorbed_m2 = estimate_total(book(x.plan, x.read, v, record, CLRAY_BOOK_ABSORBED), rays_of(x.read, v));
+  if (x.plan.request.exact) p.absorbed_m2.rounding_bound = x.read.area_rounding(v);
   return p;
 }
 
@@ -111,6 +167,7 @@ void pressure_targets(const TargetContext& x, std::vector<Target>* targets) {
 
 }  // namespace
 
-const DetectorRoom kPressureRoom{"pressure", nullptr, nullptr, pressure_targets, pressure_results};
+const DetectorRoom kPressureRoom{"pressure",       nullptr, nullptr,         pressure_targets,
+                                 pressure_results, nullptr, pressure_solved, nullptr};
 
 }  // namespace clray
