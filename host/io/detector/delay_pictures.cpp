@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "clray/constants.hpp"
+#include "io/detector/words.hpp"
 #include "text/text.hpp"
 
 namespace clray::io {
@@ -129,15 +130,12 @@ void delay_pulse_picture(Writer& writer, const DelayResult& delay, const std::st
   pulse_data(plot, curve, floor);
   const bool any_unresolved = bound_data(plot, curve);
   const double top = highest(curve);
-  const auto estimate = [&](const Estimate& e, double scale) {
-    return format_with_error(e.value * scale, e.standard_error * scale);
-  };
   plot.line("set label 1 " + gnuplot_text(delay_title(writer, delay.key)) +
             " at screen 0.54, 0.97 center font ',19' textcolor '#000000'");
   plot.line("set label 2 " +
-            gnuplot_text("A = " + estimate(a, 1.0) + " m²/sr    σ = " + estimate(a, 4.0 * constants::kPi) +
-                         " m²    mean " + estimate(delay.mean_delay_s, unit.per_second) + " " + unit.name +
-                         "    rms width " + estimate(delay.rms_width_s, unit.per_second) + " " + unit.name) +
+            gnuplot_text("A = " + scaled(a, 1.0) + " m²/sr    σ = " + scaled(a, 4.0 * constants::kPi) + " m²    mean " +
+                         scaled(delay.mean_delay_s, unit.per_second) + " " + unit.name + "    rms width " +
+                         scaled(delay.rms_width_s, unit.per_second) + " " + unit.name) +
             " at screen 0.51, 0.925 center font ',11.2' textcolor '#333333'");
   plot.line("set xlabel 'delay after a path by way of the reference point (" + std::string(unit.name) + ")'");
   plot.line("set ylabel 'A(t)  (m² sr⁻¹ " + std::string(unit.name) + "⁻¹)' offset -0.5,0");
@@ -160,9 +158,9 @@ void delay_pulse_picture(Writer& writer, const DelayResult& delay, const std::st
   plot.line("set boxwidth " + number(curve.width) + "; set style fill solid 1.0 noborder");
   std::string command = "plot ";
   if (any_unresolved) command += "$bound using 1:2 with boxes linecolor '#f3d9b8' title 'unresolved, 95 % bound', ";
-  command +=
-      "$pulse using 1:3:4 with filledcurves linecolor '#a9c9ea' title '± 1 standard error', "
-      "$pulse using 1:2 with lines linewidth 1.4 linecolor '#0b4f94' title 'A(t)'";
+  if (!a.exact()) command += "$pulse using 1:3:4 with filledcurves linecolor '#a9c9ea' title '± 1 standard error', ";
+  command += "$pulse using 1:2 with lines linewidth 1.4 linecolor '#0b4f94' title 'A(t)" +
+             std::string(a.exact() ? ", exact'" : "'");
   plot.line(command);
   writer.draw(plot, name);
 }

@@ -60,10 +60,10 @@ void bins(NetcdfFile& file, const Group& group, const std::vector<std::string>& 
        of_bins(group, [&](const DelayResult& d, std::size_t i) { return d.bin_m2_per_sr[i] / width_ns; }),
        {{"ancillary_variables", "hits resolved A_t_upper_bound"}, {"cell_methods", "delay: mean"}}},
       of_bins(group, [&](const DelayResult& d, std::size_t i) { return d.bin_standard_error[i] / width_ns; }));
-  file.variable({"hits", along, "1", "light paths that ended in the bin",
-                 of_bins(group, [](const DelayResult& d, std::size_t i) {
-                   return i < d.hits.size() ? static_cast<double>(d.hits[i]) : std::nan("");  // exact: none
-                 })});
+  file.variable(
+      {"hits", along, "1", "light paths that ended in the bin", of_bins(group, [](const DelayResult& d, std::size_t i) {
+         return i < d.hits.size() ? static_cast<double>(d.hits[i]) : std::nan("");  // exact: none
+       })});
   file.variable({"resolved", along, "1", "1 where the standard error is to be trusted, else 0",
                  of_bins(group, [](const DelayResult& d, std::size_t i) { return d.resolved[i] ? 1 : 0; })});
   file.variable({"A_t_upper_bound", along, "m2 sr-1 ns-1", "95 % bound of A_t in bins that are not resolved",
