@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <map>
 
 #include "body/portable_tables.hpp"
 #include "scene/tables.hpp"
@@ -84,22 +84,44 @@ class Builder {
   }
 
  private:
+  using Corners = std::array<std::array<double, 3>, 3>;
+
+  /// A face's corners in an order of their own.
+  Corners corners_of(std::uint32_t face) const {
+    const double* w = out_.faces[face].body;
+    Corners corners{{{{w[0], w[1], w[2]}}, {{w[3], w[4], w[5]}}, {{w[6], w[7], w[8]}}}};
+    std::sort(corners.begin(), corners.end());
+    return corners;
+  }
+
   /// Every face but those that have the corners of one that comes first in the scene's order: that one hides them.
   std::vector<std::uint32_t> distinct() const {
-    std::vector<std::uint32_t> all(out_.faces.size()), kept;
-    std::iota(all.begin(), all.end(), 0u);
-    std::vector<std::array<std::array<double, 3>, 3>> corners(all.size());
-    for (const std::uint32_t k : all) {
-      const double* w = out_.faces[k].body;
-      corners[k] = {{{{w[0], w[1], w[2]}}, {{w[3], w[4], w[5]}}, {{w[6], w[7], w[8]}}}};
-      std::sort(corners[k].begin(), corners[k].end());
+    struct Known {
+      double sum;  // of all coordinates: equal corners have equal sums
+      std::uint32_t order, face;
+    };
+    std::vector<Known> all;
+    all.reserve(out_.faces.size());
+    for (std::uint32_t k = 0; k < out_.faces.size(); ++k) {
+      const Corners c = corners_of(k);
+      double sum = 0.0;
+      for (const auto& corner : c) sum += corner[0] + 2.0 * corner[1] + 3.0 * corner[2];
+      all.push_back({sum, out_.faces[k].order, k});
     }
-    std::sort(all.begin(), all.end(), [&](std::uint32_t i, std::uint32_t k) {
-      if (corners[i] != corners[k]) return corners[i] < corners[k];
-      return out_.faces[i].order != out_.faces[k].order ? out_.faces[i].order < out_.faces[k].order : i < k;
+    std::sort(all.begin(), all.end(), [](const Known& a, const Known& b) {
+      if (a.sum != b.sum) return a.sum < b.sum;
+      return a.order != b.order ? a.order < b.order : a.face < b.face;
     });
-    for (const std::uint32_t k : all) {
-      if (kept.empty() || corners[kept.back()] != corners[k]) kept.push_back(k);
+    std::vector<std::uint32_t> kept;
+    std::map<Corners, std::uint32_t> alike;  // of one sum, where there are several
+    for (std::size_t first = 0; first < all.size();) {
+      std::size_t end = first + 1;
+      while (end < all.size() && all[end].sum == all[first].sum) ++end;
+      alike.clear();
+      for (; first < end; ++first) {
+        const bool single = alike.empty() && first + 1 == end;
+        if (single || alike.emplace(corners_of(all[first].face), 0).second) kept.push_back(all[first].face);
+      }
     }
     return kept;
   }

@@ -21,7 +21,8 @@ struct FaceGroup {
 /// Tiles of such a group, and items: pairs of a tile and a face.
 struct ItemBatch {
   std::vector<ClrayTile> tiles;
-  std::vector<std::uint32_t> lists, items;
+  std::vector<ClrayListed> lists;
+  std::vector<std::uint32_t> items;
 
   std::size_t size() const { return items.size() / 2; }
   void clear();

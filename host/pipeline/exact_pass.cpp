@@ -131,7 +131,8 @@ class Solver {
                             static_cast<std::uint32_t>(batch->lists.size()),
                             static_cast<std::uint32_t>(tile.faces.size())});
     for (const std::uint32_t face : tile.faces) {
-      batch->lists.push_back(offset + face);
+      const ClrayFace& f = beam.faces[face];
+      batch->lists.push_back({{f.box[0], f.box[1], f.box[2], f.box[3]}, f.nearest, offset + face, 0});
       const double* weights = group.on_device.weights.data() + (offset + face) * lanes;
       if (!all_faces_ && std::all_of(weights, weights + lanes, [](double w) { return w == 0.0; })) continue;
       batch->items.push_back(number);

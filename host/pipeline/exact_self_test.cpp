@@ -98,7 +98,8 @@ void run_exact_self_test(OpenedDevice& opened, const std::string& source, const 
   ItemBatch batch;
   batch.tiles = {{-1.0, 0.1, -1.0, 1.0, 4.0, 1e-12, 0, kFaces}, {0.1, 1.0, -1.0, 1.0, 4.0, 1e-12, 0, kFaces}};
   for (std::uint32_t f = 0; f < kFaces; ++f) {
-    batch.lists.push_back(f);
+    const ClrayFace& face = group.faces[f];
+    batch.lists.push_back({{face.box[0], face.box[1], face.box[2], face.box[3]}, face.nearest, f, 0});
     for (const std::uint32_t tile : {0u, 1u}) batch.items.insert(batch.items.end(), {tile, f});
   }
   std::vector<i64> sums(group.faces.size() * CLRAY_FACE_SUMS), bins(numbers.binnings * row);

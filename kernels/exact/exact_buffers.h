@@ -4,14 +4,14 @@
 #ifndef CLRAY_EXACT_BUFFERS_H
 #define CLRAY_EXACT_BUFFERS_H
 
-// What a pass reads: faces of all views, the weights of each face's lanes, tiles, their lists of faces (numbers of
-// faces, the largest first), items (a tile and a face each), and the windows of delay detectors. Then what it adds to:
+// What a pass reads: faces of all views, the weights of each face's lanes, tiles, their lists of faces (the
+// largest first), items (a tile and a face each), and the windows of delay detectors. Then what it adds to:
 // sums of each face, bins, and items that are not finished: their number, then an item and its pieces each.
 #define CLRAY_EXACT_BUFFERS(X)                 \
   X(const CLRAY_GLOBAL ClrayFace, faces)       \
   X(const CLRAY_GLOBAL f64, weights)           \
   X(const CLRAY_GLOBAL ClrayTile, tiles)       \
-  X(const CLRAY_GLOBAL u32, lists)             \
+  X(const CLRAY_GLOBAL ClrayListed, lists)     \
   X(const CLRAY_GLOBAL u32, items)             \
   X(const CLRAY_GLOBAL ClrayBinning, binnings) \
   X(volatile CLRAY_GLOBAL i64, sums)           \

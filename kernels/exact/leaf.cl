@@ -52,17 +52,13 @@ CLRAY_FN u32 face_in_tile(const CLRAY_GLOBAL ClrayFace* face, const CLRAY_GLOBAL
 /// Whether a fragment has corners inside and outside a line. An edge of no length has everything inside.
 CLRAY_FN u32 fragment_sides(const Fragment* f, Line l, f64 short_edge) {
   if (fabs(l.dx) + fabs(l.dy) < short_edge) return CLRAY_INSIDE;
-  f64 least[CLRAY_FRAGMENT_BLOCK], greatest[CLRAY_FRAGMENT_BLOCK];
-  for (u32 j = 0; j < CLRAY_FRAGMENT_BLOCK; ++j) least[j] = greatest[j] = line_side(l, f->x[j], f->y[j]);
-  for (u32 i = CLRAY_FRAGMENT_BLOCK; i < f->corners; i += CLRAY_FRAGMENT_BLOCK) {
-    for (u32 j = 0; j < CLRAY_FRAGMENT_BLOCK; ++j) {
-      const f64 side = line_side(l, f->x[i + j], f->y[i + j]);
-      least[j] = f64_min(least[j], side);
-      greatest[j] = f64_max(greatest[j], side);
-    }
+  f64 low = 0.0, high = 0.0;
+  for (u32 i = 0; i < f->corners; i += CLRAY_FRAGMENT_BLOCK) {
+    const f64 a = line_side(l, f->x[i], f->y[i]), b = line_side(l, f->x[i + 1u], f->y[i + 1u]);
+    const f64 c = line_side(l, f->x[i + 2u], f->y[i + 2u]), d = line_side(l, f->x[i + 3u], f->y[i + 3u]);
+    low = f64_min(low, f64_min(f64_min(a, b), f64_min(c, d)));
+    high = f64_max(high, f64_max(f64_max(a, b), f64_max(c, d)));
   }
-  const f64 low = f64_min(f64_min(least[0], least[1]), f64_min(least[2], least[3]));
-  const f64 high = f64_max(f64_max(greatest[0], greatest[1]), f64_max(greatest[2], greatest[3]));
   return (high > 0.0 ? CLRAY_INSIDE : 0u) | (low < 0.0 ? CLRAY_OUTSIDE : 0u);
 }
 
@@ -199,11 +195,11 @@ static u32 cut_all(const Exact* g, const __global ClrayTile* tile, u32 own, f64 
   const f64 farthest = nearest_to_beam_end(face, f) - face->margin, short_edge = CLRAY_SHORT_EDGE * tile->margin;
   const Extent e = fragment_extent(f);
   for (u32 k = f->next; k < tile->count; ++k) {
-    const u32 other = g->lists[tile->first + k];
-    const __global ClrayFace* front = g->faces + other;
-    if (other == own || front->nearest < farthest || front->box[0] >= e.x1 || front->box[1] <= e.x0 ||
-        front->box[2] >= e.y1 || front->box[3] <= e.y0)
+    const __global ClrayListed* listed = g->lists + tile->first + k;
+    if (listed->nearest < farthest || listed->box[0] >= e.x1 || listed->box[1] <= e.x0 || listed->box[2] >= e.y1 ||
+        listed->box[3] <= e.y0 || listed->face == own)
       continue;
+    const __global ClrayFace* front = g->faces + listed->face;
     u32 cutting = cutting_face_edges(f, front, short_edge);
     if (cutting == CLRAY_APART) continue;
     f64 h[3];

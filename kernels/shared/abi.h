@@ -183,8 +183,15 @@ typedef struct ClrayFace {
 #define CLRAY_FACE_PIECES 6
 #define CLRAY_FACE_SUMS 7
 
-/// A tile of the beam of a view, and the faces in it: `count` numbers from `first` on, the largest
-/// first.
+/// A face in a tile, with what is asked of it first.
+typedef struct ClrayListed {
+  f64 box[4];   // as in ClrayFace
+  f64 nearest;  // as in ClrayFace
+  u32 face;
+  u32 padding;
+} ClrayListed;
+
+/// A tile of the beam of a view, and the faces in it: `count` of the list from `first` on, the largest first.
 typedef struct ClrayTile {
   f64 x0, x1, y0, y1;
   f64 size;    // of the beam
@@ -212,6 +219,7 @@ typedef struct ClrayBinning {
   X(ClrayDetector, 8)    \
   X(ClrayPass, 80)       \
   X(ClrayFace, 296)      \
+  X(ClrayListed, 48)     \
   X(ClrayTile, 56)       \
   X(ClrayBinning, 32)
 #ifdef __cplusplus
