@@ -48,6 +48,15 @@ TEST_CASE("Kd and Ks with illum 2 become Ashikhmin-Shirley with the sum as rho a
   CHECK(mesh->warnings.empty());
 }
 
+TEST_CASE("keys may be written in any case") {
+  const auto mesh = with_mtl("NEWMTL m\nkd 0.1 0.1 0.1\nKS 0.4\nns 50\nIllum 2\nTR 0\nKe 1 1 1\nke 2 2 2\n");
+  const clray::Material& m = only(*mesh);
+  CHECK(m.model == "ashikhmin-shirley");
+  CHECK(m.parameters.at("rho") == doctest::Approx(0.5).epsilon(1e-15));
+  CHECK(m.parameters.at("n") == 50.0);
+  CHECK(mesh->warnings.empty());
+}
+
 TEST_CASE("a colour is a spectrum of three bands, each at most 1") {
   const auto clamped = with_mtl("newmtl m\nKd 1 0.25 0.625\nKs 0.5\nillum 3\n");
   for (const char* key : {"rho", "f0"}) {

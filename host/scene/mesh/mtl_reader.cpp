@@ -31,6 +31,17 @@ struct MtlEntry {
   bool textured = false;
 };
 
+/// A key as the manual writes it, if it is one that we read; some programs write them in other cases.
+std::string_view known_key(std::string_view key) {
+  constexpr auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; };
+  for (const std::string_view known : {"Kd", "Ks", "Ns", "newmtl", "illum", "map_Kd", "d", "Tr"}) {
+    if (std::equal(key.begin(), key.end(), known.begin(), known.end(),
+                   [&](char a, char b) { return lower(a) == lower(b); }))
+      return known;
+  }
+  return key;
+}
+
 class MtlReader {
  public:
   MtlReader(const std::string& path, const std::string& content) : path_(path), text_(content, path) {
@@ -44,7 +55,7 @@ class MtlReader {
   MaterialLibrary read(std::vector<std::string>& warnings) {
     while (text_.next_filled_line()) {
       const std::uint64_t line = text_.line();
-      const std::string_view key = text_.word();
+      const std::string_view key = known_key(text_.word());
       if (key == "newmtl") {
         begin(text_.rest(), line);
       } else if (current_) {
