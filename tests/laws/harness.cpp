@@ -171,8 +171,7 @@ std::vector<Comparison> compare(const Trial& trial, const Result& first, const R
 int law_scenes() {
   const char* asked = std::getenv("CLRAY_LAWS_SCENES");
   if (asked != nullptr) return std::atoi(asked);
-  const char* all = std::getenv("CLRAY_LONG_TESTS");
-  return all != nullptr && std::string(all) == "1" ? 334 : 20;
+  return long_tests() ? 334 : 20;
 }
 
 int law_frames() {

@@ -5,14 +5,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <cstdlib>
 
 namespace clray_test {
-
-bool long_tests() {
-  const char* asked = std::getenv("CLRAY_LONG_TESTS");
-  return asked != nullptr && std::string(asked) == "1";
-}
 
 std::vector<Case> stability_cases() {
   std::vector<Case> all;

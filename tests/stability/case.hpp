@@ -27,9 +27,6 @@ struct Case {
   bool long_run = false;  ///< takes many minutes: run only if it is asked for
 };
 
-/// Whether CLRAY_LONG_TESTS asks for what takes many minutes.
-bool long_tests();
-
 /// All cases, in the order in which they are reported.
 std::vector<Case> stability_cases();
 

@@ -267,4 +267,9 @@ clray::Result run(const Scene& scene) {
   return clray::trace(scene, device());
 }
 
+bool long_tests() {
+  const char* asked = std::getenv("CLRAY_LONG_TESTS");
+  return asked != nullptr && std::string(asked) == "1";
+}
+
 }  // namespace clray_test

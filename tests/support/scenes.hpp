@@ -60,6 +60,9 @@ clray::Scene& detect(clray::Scene& scene, const std::string& kind, const std::ma
 clray::Scene& window(clray::Scene& scene, double first_s, double last_s, int bins);
 clray::Scene& rays(clray::Scene& scene, int log2_rays, std::uint64_t seed = 1);
 
+/// Whether CLRAY_LONG_TESTS asks for what takes many minutes.
+bool long_tests();
+
 /// Traces on device().
 clray::Result run(const clray::Scene& scene);
 

@@ -192,9 +192,10 @@ TEST_CASE("bins of an automatic window are judged before anything is traced, wit
   CHECK(said() == "detector camera: bin_ps = 0.001 makes 1.34e+07 bins, at most 1e7 expected");
   scene.detectors[0].parameters = {{"bin_ps", 1e-3}, {"start_ns", 0.0}, {"stop_ns", 1.0}};
   CHECK(said().empty());
-  scene.detectors[0].parameters = {{"bin_ps", 1e-2}, {"start_ns", -7.0}};
+  // 8e6 bins of 500 orientations take 1.7 TB.
+  scene.detectors[0].parameters = {{"bin_ps", 1.7e-3}, {"start_ns", -7.0}};
   scene.motion = Motion{};
   scene.motion->period_s = scene.motion->stop_s = 1.0;
-  scene.motion->step_rad = 1e-4;
+  scene.motion->step_rad = 0.0126;
   CHECK(said().find("detector camera: bin_ps: the results need about ") == 0);
 }
