@@ -205,6 +205,7 @@ static u32 cut_all(const Exact* g, const __global ClrayTile* tile, u32 own, f64 
     f64 h[3];
     const u32 where = hides(front, face, tile->margin, h);
     if (where == CLRAY_NOWHERE) continue;
+    if (where == CLRAY_EVERYWHERE && cutting == 0u) return CLRAY_PIECE_GONE;  // all of it is hidden
     Fragment polygon;
     hiding_part(front, where, h, &polygon);
     if (polygon.corners == 0u) continue;
