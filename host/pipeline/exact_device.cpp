@@ -2,6 +2,7 @@
 // See exact_device.hpp.
 #include "pipeline/exact_device.hpp"
 
+#include <numeric>
 #include <string>
 
 #include "clray/error.hpp"
@@ -20,6 +21,22 @@ cl::Kernel tested_kernel(OpenedDevice& opened, const ProgramOptions& options, co
       make_kernel(opened, build_source(opened, "exact.cl", source, options.warnings_are_errors), "clray_exact");
   run_exact_self_test(opened, source, kernel, numbers);
   return kernel;
+}
+
+/// Work-groups of items in an order that spreads neighbours, which are of one tile and so of like cost: drivers give
+/// each core a run of work-groups. No result depends on it.
+std::vector<std::uint32_t> spread(const std::vector<std::uint32_t>& items) {
+  const std::size_t width = 2 * kGroup, groups = items.size() / width;
+  if (groups < 3) return items;
+  std::size_t stride = static_cast<std::size_t>(0.618 * static_cast<double>(groups)) | 1u;
+  while (std::gcd(stride, groups) != 1) ++stride;
+  std::vector<std::uint32_t> out;
+  out.reserve(items.size());
+  for (std::size_t k = 0, g = 0; k < groups; ++k, g = (g + stride) % groups)
+    out.insert(out.end(), items.begin() + static_cast<std::ptrdiff_t>(g * width),
+               items.begin() + static_cast<std::ptrdiff_t>((g + 1) * width));
+  out.insert(out.end(), items.begin() + static_cast<std::ptrdiff_t>(groups * width), items.end());
+  return out;
 }
 
 }  // namespace
@@ -53,6 +70,7 @@ void ExactDevice::launch_batch(ItemBatch* batch) {
   std::swap(batch_, *batch);
   batch->clear();
   if (batch_.size() == 0) return;
+  batch_.items = spread(batch_.items);
   tiles_ = make_buffer(opened_, batch_.tiles);
   lists_ = make_buffer(opened_, batch_.lists);
   items_ = make_buffer(opened_, batch_.items);

@@ -17,7 +17,7 @@ namespace clray {
 namespace {
 
 constexpr std::size_t kGroupFaces = 1u << 16;  // of a group of views, unless one view has more
-constexpr std::size_t kBatchItems = 1u << 14;  // of a launch: an interrupt waits for one
+constexpr std::size_t kBatchItems = 1u << 15;  // of a launch: an interrupt waits for one
 
 double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
