@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The entry point of exact passes: the visible part of every face in every tile (docs/exact.md). A work-item takes one
-// face in one tile. Items whose stack is too small are noted with the number of pieces that they have added; the host
-// finishes them.
+// face in one tile. Items whose stack is too small are noted with the number of fragments that they have done; the
+// host finishes them.
 #include "shared/portable.h"
 #include "shared/abi.h"
 #include "exact/exact_buffers.h"
@@ -15,9 +15,9 @@ __kernel void clray_exact(CLRAY_EXACT_BUFFERS(CLRAY_ARGUMENT) u32 count) {
   const Exact g = {CLRAY_EXACT_BUFFERS(CLRAY_VALUE)};
   Fragment stack[CLRAY_EXACT_STACK];
   u32 full;
-  const u32 pieces = exact_item(&g, item, stack, CLRAY_EXACT_STACK, 0u, &full);
+  const u32 done = exact_item(&g, item, stack, CLRAY_EXACT_STACK, 0u, &full);
   if (!full) return;
   const u32 at = atomic_inc(unfinished);
   unfinished[1u + 2u * at] = item;
-  unfinished[2u + 2u * at] = pieces;
+  unfinished[2u + 2u * at] = done;
 }

@@ -39,9 +39,9 @@ void exact_item_on_host(const ExactBuffers& buffers, const ExactNumbers& numbers
   thread_local std::vector<Fragment> stack(1024);
   std::uint32_t full = 0;
   for (;;) {
-    const std::uint32_t pieces = exact_item(&g, item, stack.data(), static_cast<u32>(stack.size()), skip, &full);
+    const std::uint32_t done = exact_item(&g, item, stack.data(), static_cast<u32>(stack.size()), skip, &full);
     if (!full) return;
-    skip = std::max(skip, pieces);
+    skip = std::max(skip, done);
     if (stack.size() >= kMostWaiting) throw Error(ErrorCode::bug, "a face falls into too many pieces", "exact pass");
     stack.resize(2 * stack.size());
   }

@@ -25,8 +25,8 @@ struct ExactNumbers {
   std::uint32_t lanes = 1, binnings = 0;
 };
 
-/// One face in one tile, as a work-item of a device does it, from the piece numbered `skip` on. Throws Error(bug) where
-/// the fragments that wait grow beyond all bounds.
+/// One face in one tile, as a work-item of a device does it, from the fragment numbered `skip` on. Throws Error(bug)
+/// where the fragments that wait grow beyond all bounds.
 void exact_item_on_host(const ExactBuffers& buffers, const ExactNumbers& numbers, std::uint32_t item,
                         std::uint32_t skip);
 

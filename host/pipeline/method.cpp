@@ -69,10 +69,13 @@ std::string obstacle(const Scene& scene, const Geometry& geometry, const Detecto
   return made_of_polygons(geometry) ? "" : "a curved shape is in the scene";
 }
 
-bool much_dearer(const Geometry& geometry, std::size_t views) {
-  const auto count = static_cast<double>(views);
-  const double exact = kSecondsPerFace * static_cast<double>(geometry.primitives.size()) * count;
-  return exact > kMuchDearer * kSecondsPerRay * std::max(kDefaultRays, kLeastRaysPerView * count);
+/// What solving so many views takes, s on one core.
+double seconds_to_solve(const Geometry& geometry, std::size_t views) {
+  return kSecondsPerFace * static_cast<double>(geometry.primitives.size()) * static_cast<double>(views);
+}
+
+double seconds_of_rays(std::size_t views) {
+  return kSecondsPerRay * std::max(kDefaultRays, kLeastRaysPerView * static_cast<double>(views));
 }
 
 }  // namespace
@@ -89,7 +92,11 @@ MethodChoice choose_method(const Scene& scene, const Geometry& geometry, const D
   }
   if (t.rays != 0) return {false, fmt::format("rays = {} are asked for", t.rays)};
   if (!why.empty()) return {false, why};
-  if (much_dearer(geometry, views)) {
+  const double seconds = seconds_to_solve(geometry, views);
+  // An exact pass that time cuts off has no result.
+  if (t.time_limit_s > 0.0 && seconds > 0.5 * t.time_limit_s)
+    return {false, fmt::format("solving it may take longer than the time limit of {:g} s", t.time_limit_s)};
+  if (seconds > kMuchDearer * seconds_of_rays(views)) {
     return {false, fmt::format("{} faces in {} views would take much longer than rays; --method exact solves them",
                                geometry.primitives.size(), views)};
   }

@@ -6,7 +6,7 @@
 
 // What a pass reads: faces of all views, the weights of each face's lanes, tiles, their lists of faces (the
 // largest first), items (a tile and a face each), and the windows of delay detectors. Then what it adds to:
-// sums of each face, bins, and items that are not finished: their number, then an item and its pieces each.
+// sums of each face, bins, and items that are not finished: their number, then an item and its fragments each.
 #define CLRAY_EXACT_BUFFERS(X)                 \
   X(const CLRAY_GLOBAL ClrayFace, faces)       \
   X(const CLRAY_GLOBAL f64, weights)           \

@@ -10,7 +10,6 @@
 /// The sums of a face that one work-item keeps; scales are those of the face.
 typedef struct Kept {
   i64 sum[CLRAY_FACE_SUMS];
-  f64 lost;  // m²: a bound of what rounding may have moved
 } Kept;
 
 /// Depth over a face, from its first corner.
@@ -40,6 +39,7 @@ CLRAY_FN void keep_piece(const CLRAY_GLOBAL ClrayFace* face, const Fragment* f, 
   }
   const f64 s = face->area_scale, third = 0.33333333333333333;
   const f64 length = s * face->inv_length, depth = s * face->inv_depth;
+  kept->sum[CLRAY_FACE_PIECES] += 1;
   kept->sum[CLRAY_FACE_AREA] += convert_long_rte(area * s);
   kept->sum[CLRAY_FACE_X] += convert_long_rte(mx * third * length);
   kept->sum[CLRAY_FACE_Y] += convert_long_rte(my * third * length);

@@ -2,7 +2,7 @@
 // One face in one tile: the part of the face that no other face hides. What hides it is cut out of it, the largest
 // faces first: they leave the least to cut, and of nested faces the last leaves nothing to the others. Fragments wait
 // on a stack with the place in the tile's list from which others are still to be cut out of them, so no lists of pieces
-// are kept. Where the stack is full the work-item stops, and the host goes on after the pieces that it has counted
+// are kept. Where the stack is full the work-item stops, and the host goes on after the fragments that it has done
 // (host/pipeline/exact_pass.cpp).
 #ifndef CLRAY_EXACT_LEAF_CL
 #define CLRAY_EXACT_LEAF_CL
@@ -244,8 +244,8 @@ static void add_to_bins(const Exact* g, u32 own, const Fragment* f, f64 area) {
   }
 }
 
-/// One face in one tile. Pieces are counted from 0, and those before `skip` are left out. Returns how many there were;
-/// *full is 1 where the stack had no more room.
+/// One face in one tile. Its fragments are taken one after the other; those before the `skip`-th add nothing. Returns
+/// how many were done; *full is 1 where the stack had no more room for the next.
 static u32 exact_item(const Exact* g, u32 item, Fragment* stack, u32 room, u32 skip, u32* full) {
   const __global ClrayTile* tile = g->tiles + g->items[2u * item];
   const u32 own = g->items[2u * item + 1u];
@@ -253,34 +253,29 @@ static u32 exact_item(const Exact* g, u32 item, Fragment* stack, u32 room, u32 s
   Waiting waiting = {stack, 0u, room};
   Kept kept;
   for (u32 k = 0; k < CLRAY_FACE_SUMS; ++k) kept.sum[k] = 0;
-  kept.lost = 0.0;
-  u32 pieces = 0u;
   *full = face_in_tile(face, tile, stack) ? 0u : 1u;
   stack[0].next = 0u;
   if (stack[0].corners >= 3u) waiting.count = 1u;
   const f64 whole2 = waiting.count == 1u ? fragment_area2(stack) : 0.0;
+  u32 done = 0u;
   while (waiting.count > 0u && !*full) {
     Fragment f = stack[--waiting.count];
     f64 lost = 0.0;
     const u32 end = cut_all(g, tile, own, CLRAY_SLIVER * whole2, &f, &waiting, &lost);
-    if (end == CLRAY_PIECE_FULL) {
-      *full = 1u;
-      break;
+    if (end == CLRAY_PIECE_FULL) *full = 1u;
+    if (end == CLRAY_PIECE_FULL || done++ < skip) continue;
+    if (end == CLRAY_PIECE_VISIBLE) {
+      const f64 area = 0.5 * fragment_area2(&f);
+      lost = fma(CLRAY_ROUNDING * tile->size, extent_size(fragment_extent(&f)), lost);
+      keep_piece(face, &f, area, &kept);
+      add_to_bins(g, own, &f, area);
     }
-    if (pieces >= skip) kept.lost += lost;
-    if (end == CLRAY_PIECE_GONE) continue;
-    if (pieces++ < skip) continue;
-    const f64 area = 0.5 * fragment_area2(&f);
-    kept.lost = fma(CLRAY_ROUNDING * tile->size, extent_size(fragment_extent(&f)), kept.lost);
-    keep_piece(face, &f, area, &kept);
-    add_to_bins(g, own, &f, area);
+    kept.sum[CLRAY_FACE_LOST] += convert_long_rte(lost * face->area_scale);
   }
-  kept.sum[CLRAY_FACE_LOST] = convert_long_rte(kept.lost * face->area_scale);
-  kept.sum[CLRAY_FACE_PIECES] = (i64)(pieces > skip ? pieces - skip : 0u);
   for (u32 k = 0; k < CLRAY_FACE_SUMS; ++k) {
     if (kept.sum[k] != 0) atomic_add_i64(g->sums + (u64)own * CLRAY_FACE_SUMS + k, kept.sum[k]);
   }
-  return pieces;
+  return done;
 }
 
 #endif

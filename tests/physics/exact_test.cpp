@@ -5,6 +5,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <random>
 
 #include "clray/error.hpp"
@@ -192,6 +193,19 @@ TEST_CASE("soups against scanlines in long double, and the claimed bound of roun
       CHECK(off <= total(result).rounding_bound);
     }
   }
+}
+
+TEST_CASE("many small soups, sparse and dense: the claimed bound of rounding holds") {
+  const std::uint64_t soups = std::getenv("CLRAY_LONG_TESTS") != nullptr ? 1000 : 100;
+  double closest = 0.0;
+  for (std::uint64_t seed = 1; seed <= soups; ++seed) {
+    const auto triangles = soup(100 + seed, 12, seed % 2 == 0 ? 0.5 : 2.0);
+    const long double expected = reference_total(triangles, 0.5);
+    const clray::Estimate a = total(solve(lambert_scene(mesh_of(triangles), toward(0.0))));
+    closest = std::max(closest, static_cast<double>(std::fabs(a.value - expected)) / a.rounding_bound);
+  }
+  CHECK(closest > 0.0);
+  CHECK(closest <= 1.0);
 }
 
 TEST_CASE("faces given twice, turned and shuffled change no bit of an exact pulse") {
