@@ -54,7 +54,7 @@ std::vector<std::tuple<std::string, std::vector<double>, std::vector<double>>> s
 
 class Packer {
  public:
-  explicit Packer(const Scene& scene) : scene_(scene) {}
+  Packer(const Scene& scene, bool trees) : scene_(scene) { g_.trees = trees; }
 
   Geometry pack() {
     make_parts();
@@ -69,7 +69,7 @@ class Packer {
     if (raw_.empty()) throw Error(ErrorCode::input, "nothing to trace: every face has zero area", scene_.path);
     rank();
     share_planes();
-    build_trees();
+    place();
     bound();
     g_.single = g_.parts.size() == 1 && scene_.components.size() == 1 && !g_.shared_planes;
     return std::move(g_);
@@ -242,7 +242,8 @@ class Packer {
     return box;
   }
 
-  void build_trees() {
+  // Places the primitives of each part in the order of its tree, or, without one, in that of their ranks.
+  void place() {
     std::vector<bool> used(table("shape").size(), false);
     for (std::uint32_t p = 0; p < g_.parts.size(); ++p) {
       std::vector<std::uint32_t> members;
@@ -254,6 +255,10 @@ class Packer {
         g_.parts[p].box.add(boxes.back());
       }
       if (members.empty()) continue;
+      if (!g_.trees) {
+        for (const std::uint32_t member : members) append(raw_[member], member, used);
+        continue;
+      }
       const LinearBvh tree = build_bvh(boxes);
       const auto first_primitive = static_cast<std::uint32_t>(g_.primitives.size());
       g_.parts[p].root = static_cast<std::uint32_t>(g_.nodes.size());
@@ -338,8 +343,8 @@ bool Geometry::convex() const {
           CLRAY_SHAPE_CONVEX) != 0;
 }
 
-Geometry build_geometry(const Scene& scene) {
-  return Packer(scene).pack();
+Geometry build_geometry(const Scene& scene, bool trees) {
+  return Packer(scene, trees).pack();
 }
 
 RigidMotion part_motion(const Scene& scene, const Part& part, const Vec3& source, const Vec3& observer) {

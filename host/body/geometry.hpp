@@ -41,6 +41,7 @@ struct Geometry {
   std::vector<int> shape_rows;  ///< rows of shape.def in use, ascending
   std::vector<std::uint32_t> part_of_component;
   std::uint32_t stack_needed = 1;  ///< of the deepest tree
+  bool trees = true;               ///< false: there are no nodes, and no ray can be traced
   bool single = false;             ///< one component, and no faces in one place
   bool shared_planes = false;      ///< faces overlap in one plane
   std::uint64_t conflicts = 0;     ///< such faces that overlap one of another material which looks the same way
@@ -54,8 +55,9 @@ struct Geometry {
   bool convex() const;
 };
 
-/// Builds everything that does not depend on the view. Throws Error(input) if nothing can be hit.
-Geometry build_geometry(const Scene& scene);
+/// Builds everything that does not depend on the view; without `trees`, what needs no rays. Throws Error(input) if
+/// nothing can be hit.
+Geometry build_geometry(const Scene& scene, bool trees = true);
 
 /// Where a hinged part stands in a view.
 RigidMotion part_motion(const Scene& scene, const Part& part, const Vec3& source, const Vec3& observer);

@@ -59,14 +59,12 @@ std::string obstacle_to(const Scene& scene, const TableRow& row) {
   return {};
 }
 
-/// Why a detector's numbers cannot be exact; empty where they can.
-std::string obstacle(const Scene& scene, const Geometry& geometry, const DetectorSpec& detector) {
+/// Why a detector's numbers cannot be exact, whatever the shapes; empty where they can.
+std::string obstacle(const Scene& scene, const DetectorSpec& detector) {
   const TableRow& row = table_row("detector", detector.kind);
   if (!solvable(row)) return detector.kind + " follows light that cannot be solved";
   if (scene.trace.max_bounces > 1) return "light is followed over several bounces";
-  const std::string why = obstacle_to(scene, row);
-  if (!why.empty()) return why;
-  return made_of_polygons(geometry) ? "" : "a curved shape is in the scene";
+  return obstacle_to(scene, row);
 }
 
 /// What solving so many views takes, s on one core.
@@ -80,11 +78,20 @@ double seconds_of_rays(std::size_t views) {
 
 }  // namespace
 
+bool may_need_no_rays(const Scene& scene) {
+  if (scene.trace.method == Method::points || scene.trace.rays != 0) return false;
+  return std::all_of(scene.components.begin(), scene.components.end(),
+                     [](const Component& c) { return table_row("shape", c.shape).flat; }) &&
+         std::all_of(scene.detectors.begin(), scene.detectors.end(),
+                     [&](const DetectorSpec& d) { return obstacle(scene, d).empty(); });
+}
+
 MethodChoice choose_method(const Scene& scene, const Geometry& geometry, const DetectorSpec& detector,
                            std::size_t views) {
   const TraceOptions& t = scene.trace;
   if (t.method == Method::points) return {false, "points are asked for"};
-  const std::string why = obstacle(scene, geometry, detector);
+  std::string why = obstacle(scene, detector);
+  if (why.empty() && !made_of_polygons(geometry)) why = "a curved shape is in the scene";
   if (t.method == Method::exact) {
     if (t.rays != 0) throw Error(ErrorCode::input, "method = \"exact\" traces no rays: leave rays out", "trace.rays");
     if (!why.empty()) throw Error(ErrorCode::input, "method = \"exact\" is not possible: " + why, "trace.method");

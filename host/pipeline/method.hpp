@@ -14,6 +14,9 @@ struct MethodChoice {
   std::string why;
 };
 
+/// Whether all numbers of a scene may turn out to be exact, so that no trees are needed; only its faces are not asked.
+bool may_need_no_rays(const Scene& scene);
+
 /// The method for a detector of the beam in so many views. Throws Error(input) where the scene asks for exact numbers
 /// and they cannot be had.
 MethodChoice choose_method(const Scene& scene, const Geometry& geometry, const DetectorSpec& detector,

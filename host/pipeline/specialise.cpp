@@ -42,6 +42,7 @@ class Specialiser {
     define("CLRAY_EXACT_STACK", kWaiting);
     out_.kept.push_back("faces, tiles and their visible parts: visibility is solved");
     out_.left_out.push_back("rays, their random numbers and replicates: nothing is sampled");
+    if (!geometry_.trees) out_.left_out.push_back("trees: no pass has rays");
     return std::move(out_);
   }
 

@@ -14,6 +14,7 @@
 #include "clray/pass.hpp"
 #include "clray/result.hpp"
 #include "pipeline/exact_pass.hpp"
+#include "pipeline/method.hpp"
 #include "pipeline/outcome.hpp"
 #include "pipeline/pass_driver.hpp"
 #include "pipeline/pass_runner.hpp"
@@ -42,6 +43,15 @@ void add_unique(const std::vector<std::string>& from, std::vector<std::string>* 
   for (const std::string& line : from) {
     if (std::find(to->begin(), to->end(), line) == to->end()) to->push_back(line);
   }
+}
+
+/// The body, with trees only where a pass has rays.
+Geometry geometry_of(const Scene& scene) {
+  if (!may_need_no_rays(scene)) return build_geometry(scene);
+  Geometry geometry = build_geometry(scene, false);
+  const std::vector<PassRequest> requests = pass_requests(scene, geometry);
+  const bool solved = std::all_of(requests.begin(), requests.end(), [](const PassRequest& r) { return r.exact; });
+  return solved ? geometry : build_geometry(scene);
 }
 
 /// Traces or solves a pass. Adds to the seconds spent compiling and tracing.
@@ -74,7 +84,7 @@ Result trace(const Scene& scene, Device& device, const TraceHooks& hooks) {
   result.device = device.info();
   result.seed = scene.trace.seed;
   result.replicates = scene.trace.replicates;
-  const Geometry geometry = build_geometry(scene);
+  const Geometry geometry = geometry_of(scene);
   result.mesh = geometry.report;
   result.extent_m = geometry.extent;
   const std::vector<PassPlan> plans = plan_passes(scene, geometry);
