@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Stiff and extreme bodies for the exact method: sheets, fans, slats, needles, grazing light, far-off bodies, faces in
-// one place, scaling. Each is right to the rounding that it claims and takes less than a second.
+// one place, scaling. Each is right to the rounding that it claims; times are told, not judged.
 #include <fmt/format.h>
 
 #include <chrono>
@@ -15,7 +15,7 @@ using clray::Vec3;
 
 namespace {
 
-const char* const kTolerance = "the rounding_bound that is claimed, and 1e-9 of the total; tracing under 1 s";
+const char* const kTolerance = "the rounding_bound that is claimed, and 1e-9 of the total";
 
 double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -41,7 +41,7 @@ Outcome is(const Scene& scene, double expected, double unknown = 0.0) {
   Outcome outcome;
   outcome.measured = fmt::format("A = {:.12g}, off by {:.1e}, claimed {:.1e}; {:.2f} s of tracing, {:.2f} in all",
                                  a.value, off, a.rounding_bound, seconds, all);
-  outcome.pass = off <= a.rounding_bound + unknown && off <= 1e-9 * expected + unknown && seconds < 1.0;
+  outcome.pass = off <= a.rounding_bound + unknown && off <= 1e-9 * expected + unknown;
   outcome.pass = sound(result, &outcome.measured) && outcome.pass;
   return outcome;
 }

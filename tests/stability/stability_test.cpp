@@ -32,3 +32,6 @@ TEST_CASE("stability: bins") {
 TEST_CASE("stability: statistics") {
   run_area("statistics");
 }
+TEST_CASE("stability: exact") {
+  run_area("exact");
+}
