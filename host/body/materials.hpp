@@ -18,6 +18,8 @@ struct MaterialTable {
   std::vector<int> models;  ///< rows of brdf.def in use, ascending
   bool one_sided = false;   ///< some material has a black back
   bool delta = false;       ///< some material is an ideal reflector
+
+  const ClrayMaterial& of(std::size_t lane, std::uint32_t material) const { return rows[lane * columns + material]; }
 };
 
 /// Materials of `lanes`; with `reflectances`, tables of directional reflectance too.

@@ -192,7 +192,7 @@ class Builder {
     out_.y0 = first ? f.box[2] : std::min(out_.y0, f.box[2]);
     out_.y1 = first ? f.box[3] : std::max(out_.y1, f.box[3]);
     out_.faces.push_back(f);
-    out_.origins.push_back({primitive, front || two_sided, cosine});
+    out_.origins.push_back({primitive, p.material, front || two_sided, cosine});
   }
 
   const Geometry& geometry_;

@@ -15,6 +15,7 @@ namespace clray {
 /// What a face of a beam is of the body.
 struct FaceOrigin {
   std::uint32_t primitive = 0;  ///< in Geometry::primitives
+  std::uint32_t material = 0;   ///< column of the material table
   bool lit = true;              ///< false: the black back of a one-sided material
   double mu = 0.0;              ///< cosine of the angle between its normal and the source
 };

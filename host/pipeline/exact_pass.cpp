@@ -23,16 +23,12 @@ double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-vec3 vec_of(const double* p) {
-  return v3(p[0], p[1], p[2]);
-}
-
 /// The windows of the delay detectors among the histograms of a pass, and the numbers that all of them have.
 std::vector<ClrayBinning> binnings_of(const PassPlan& plan, std::uint64_t* numbers) {
   std::vector<ClrayBinning> binnings;
   *numbers = 0;
   for (const PassDetector& d : plan.detectors) {
-    const auto window = room_of(table("detector")[static_cast<std::size_t>(d.row)].id).binning;
+    const auto window = room_of(d).binning;
     if (window == nullptr) continue;
     ClrayBinning b = window(d);
     b.offset = *numbers;
@@ -82,8 +78,8 @@ class Solver {
  private:
   void add_view(std::size_t v, Group* group) const {
     const ClrayView& view = plan_.beams.views[v];
-    group->beams.push_back(beam_faces(geometry_, plan_.materials, plan_.motions[v], vec_of(view.toward),
-                                      vec_of(plan_.constants.reference), static_cast<std::uint32_t>(v)));
+    group->beams.push_back(beam_faces(geometry_, plan_.materials, plan_.motions[v], v3_load(view.toward),
+                                      v3_load(plan_.constants.reference), static_cast<std::uint32_t>(v)));
     const BeamFaces& beam = group->beams.back();
     group->offsets.push_back(group->on_device.faces.size());
     const std::size_t lanes = plan_.request.lanes.size();
@@ -99,9 +95,8 @@ class Solver {
   double weight(const BeamFaces& beam, std::size_t face, std::size_t lane) const {
     const FaceOrigin& origin = beam.origins[face];
     if (!origin.lit || !plan_.traits.connect) return 0.0;
-    const std::uint32_t material = geometry_.primitives[origin.primitive].material;
-    const ClrayMaterial& m = plan_.materials.rows[lane * plan_.materials.columns + material];
-    return surface_weight(m, plan_.materials.tables, vec_of(beam.faces[face].normal), beam.toward, beam.toward);
+    return surface_weight(plan_.materials.of(lane, origin.material), plan_.materials.tables,
+                          v3_load(beam.faces[face].normal), beam.toward, beam.toward);
   }
 
   bool solve(const Group& group) {
@@ -155,7 +150,7 @@ class Solver {
       const double* weights = group.on_device.weights.data() + group.offsets[k] * plan_.request.lanes.size();
       const SolvedView solved{group.first_view + k, beam, visible, weights};
       for (const PassDetector& d : plan_.detectors) {
-        const auto add = room_of(table("detector")[static_cast<std::size_t>(d.row)].id).solved;
+        const auto add = room_of(d).solved;
         if (add != nullptr) add({plan_, d, geometry_, solved}, &sums_);
       }
       sums_.points[solved.view] = 1;
@@ -192,7 +187,7 @@ void take_bins(const PassPlan& plan, const std::vector<ClrayBinning>& binnings, 
   const SumShape& shape = plan.layout.shape;
   std::size_t n = 0;
   for (const PassDetector& d : plan.detectors) {
-    if (room_of(table("detector")[static_cast<std::size_t>(d.row)].id).binning == nullptr) continue;
+    if (room_of(d).binning == nullptr) continue;
     const ClrayBinning& b = binnings[n++];
     const SumBlock& block = plan.layout.blocks[d.first_block];
     for (std::uint64_t row = 0; row < shape.views * shape.lanes; ++row) {

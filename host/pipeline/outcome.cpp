@@ -17,10 +17,6 @@
 namespace clray {
 namespace {
 
-const DetectorRoom& room(const PassDetector& detector) {
-  return room_of(table("detector")[static_cast<std::size_t>(detector.row)].id);
-}
-
 void add_counters(const Sums& sums, Result* out) {
   std::array<std::uint64_t, CLRAY_COUNTERS> n{};
   for (const auto& view : sums.events) std::transform(n.begin(), n.end(), view.begin(), n.begin(), std::plus<>());
@@ -95,7 +91,7 @@ std::vector<Target> targets_of(const PassPlan& plan, const Geometry& geometry, c
   const SumReader read(plan, sums);
   for (const PassDetector& detector : plan.detectors) {
     if (!detector.asked) continue;
-    const auto add = room(detector).targets != nullptr ? room(detector).targets : sums_targets;
+    const auto add = room_of(detector).targets != nullptr ? room_of(detector).targets : sums_targets;
     add({plan, detector, read, geometry, view}, &targets);
   }
   return targets;
@@ -104,7 +100,7 @@ std::vector<Target> targets_of(const PassPlan& plan, const Geometry& geometry, c
 double picture_error(const PassPlan& plan, const Geometry& geometry, const Sums& sums, std::size_t view) {
   const SumReader read(plan, sums);
   for (const PassDetector& detector : plan.detectors) {
-    if (const auto error = room(detector).picture_error) return error({plan, detector, read, geometry, view});
+    if (const auto error = room_of(detector).picture_error) return error({plan, detector, read, geometry, view});
   }
   throw Error(ErrorCode::bug, "no detector of this pass paints", "picture_error");
 }
@@ -119,7 +115,7 @@ void add_results(const Scene& scene, const PassPlan& plan, const PassOutcome& ou
   const SumReader read(plan, outcome.sums);
   for (const PassDetector& detector : plan.detectors) {
     if (!detector.asked) continue;
-    const auto results = room(detector).results != nullptr ? room(detector).results : sums_results;
+    const auto results = room_of(detector).results != nullptr ? room_of(detector).results : sums_results;
     results({scene, plan, detector, read, *result, *lit});
   }
   add_counters(outcome.sums, result);

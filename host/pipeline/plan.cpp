@@ -154,7 +154,7 @@ SumLayout layout_of(const PassPlan& plan, std::vector<PassDetector>* detectors) 
 
 std::optional<PathBins> path_bins_of(const std::vector<PassDetector>& detectors) {
   for (const PassDetector& detector : detectors) {
-    const auto bins = room_of(table("detector")[static_cast<std::size_t>(detector.row)].id).path_bins;
+    const auto bins = room_of(detector).path_bins;
     if (bins != nullptr) return bins(detector.settings);
   }
   return std::nullopt;
@@ -204,9 +204,12 @@ PassPlan plan_pass(const Scene& scene, const Geometry& geometry, PassRequest req
 }
 
 std::vector<PassPlan> plan_passes(const Scene& scene, const Geometry& geometry) {
+  return plan_passes(scene, geometry, pass_requests(scene, geometry));
+}
+
+std::vector<PassPlan> plan_passes(const Scene& scene, const Geometry& geometry, std::vector<PassRequest> requests) {
   std::vector<PassPlan> plans;
-  for (PassRequest& request : pass_requests(scene, geometry))
-    plans.push_back(plan_pass(scene, geometry, std::move(request)));
+  for (PassRequest& request : requests) plans.push_back(plan_pass(scene, geometry, std::move(request)));
   return plans;
 }
 

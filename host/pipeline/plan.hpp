@@ -81,6 +81,8 @@ struct PassPlan {
 
 /// All passes of a scene. Throws Error(input) for what cannot be traced.
 std::vector<PassPlan> plan_passes(const Scene& scene, const Geometry& geometry);
+/// Those of known requests.
+std::vector<PassPlan> plan_passes(const Scene& scene, const Geometry& geometry, std::vector<PassRequest> requests);
 
 /// What each pass of a scene is for: detectors that can share rays share a pass, and so do lanes.
 std::vector<PassRequest> pass_requests(const Scene& scene, const Geometry& geometry);

@@ -34,8 +34,7 @@ class Specialiser {
   // An exact pass has a program of its own (exact.cl), which knows faces and no surfaces.
   Specialised exact() {
     std::size_t binnings = 0;
-    for (const PassDetector& d : plan_.detectors)
-      binnings += room_of(table("detector")[static_cast<std::size_t>(d.row)].id).binning != nullptr;
+    for (const PassDetector& d : plan_.detectors) binnings += room_of(d).binning != nullptr;
     out_.entry = "exact.cl";
     define("CLRAY_LANES", plan_.request.lanes.size());
     define("CLRAY_BINNINGS", binnings);

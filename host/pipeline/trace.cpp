@@ -45,13 +45,12 @@ void add_unique(const std::vector<std::string>& from, std::vector<std::string>* 
   }
 }
 
-/// The body, with trees only where a pass has rays.
-Geometry geometry_of(const Scene& scene) {
-  if (!may_need_no_rays(scene)) return build_geometry(scene);
-  Geometry geometry = build_geometry(scene, false);
-  const std::vector<PassRequest> requests = pass_requests(scene, geometry);
-  const bool solved = std::all_of(requests.begin(), requests.end(), [](const PassRequest& r) { return r.exact; });
-  return solved ? geometry : build_geometry(scene);
+/// The body, with trees only where a pass has rays, and what the passes are for.
+Geometry geometry_of(const Scene& scene, std::vector<PassRequest>* requests) {
+  Geometry geometry = build_geometry(scene, !may_need_no_rays(scene));
+  *requests = pass_requests(scene, geometry);
+  const bool rays = std::any_of(requests->begin(), requests->end(), [](const PassRequest& r) { return !r.exact; });
+  return rays && !geometry.trees ? build_geometry(scene) : geometry;
 }
 
 /// Traces or solves a pass. Adds to the seconds spent compiling and tracing.
@@ -84,10 +83,11 @@ Result trace(const Scene& scene, Device& device, const TraceHooks& hooks) {
   result.device = device.info();
   result.seed = scene.trace.seed;
   result.replicates = scene.trace.replicates;
-  const Geometry geometry = geometry_of(scene);
+  std::vector<PassRequest> requests;
+  const Geometry geometry = geometry_of(scene, &requests);
   result.mesh = geometry.report;
   result.extent_m = geometry.extent;
-  const std::vector<PassPlan> plans = plan_passes(scene, geometry);
+  const std::vector<PassPlan> plans = plan_passes(scene, geometry, std::move(requests));
   result.seconds.bvh = now() - start;
   result.digest = kFnvStart;
   bool target_reached = true;

@@ -49,8 +49,7 @@ void books_solved(const SolvedContext& x, Sums* sums) {
     const std::uint64_t row = block.offset + (x.solved.view * shape.lanes + l) * block.width;
     for (std::size_t f = 0; f < x.solved.visible.size(); ++f) {
       const FaceOrigin& origin = x.solved.beam.origins[f];
-      const std::uint32_t material = x.geometry.primitives[origin.primitive].material;
-      const ClrayMaterial& m = x.plan.materials.rows[l * x.plan.materials.columns + material];
+      const ClrayMaterial& m = x.plan.materials.of(l, origin.material);
       const Sum received = std::llrint(x.solved.visible[f].area_m2 * scale);
       const double reflectance = origin.lit ? surface_reflectance(m, x.plan.materials.tables, origin.mu) : 0.0;
       const Sum sent = std::llrint(x.solved.visible[f].area_m2 * reflectance * scale);

@@ -21,9 +21,8 @@ constexpr std::uint32_t kThermal = 2;  // key
 vec3 push_of(const SolvedContext& x, std::size_t face, std::size_t lane) {
   const ClrayFace& f = x.solved.beam.faces[face];
   const FaceOrigin& origin = x.solved.beam.origins[face];
-  const std::uint32_t material = x.geometry.primitives[origin.primitive].material;
-  const ClrayMaterial& m = x.plan.materials.rows[lane * x.plan.materials.columns + material];
-  const vec3 n = v3(f.normal[0], f.normal[1], f.normal[2]), s = x.solved.beam.toward;
+  const ClrayMaterial& m = x.plan.materials.of(lane, origin.material);
+  const vec3 n = v3_load(f.normal), s = x.solved.beam.toward;
   ReflectedMomentum sent;
   double reflectance = 0.0;
   if (origin.lit) {

@@ -88,5 +88,8 @@ struct DetectorRoom {
 
 /// The room of a row of detector.def; one with every default where it has none.
 const DetectorRoom& room_of(const std::string& id);
+inline const DetectorRoom& room_of(const PassDetector& detector) {
+  return room_of(table("detector")[static_cast<std::size_t>(detector.row)].id);
+}
 
 }  // namespace clray
