@@ -43,12 +43,9 @@ void place_parts(const Geometry& geometry, const std::vector<RigidMotion>& motio
     if (part.box.empty()) continue;
     Box box;
     for (int corner = 0; corner < 8; ++corner) {
-      Point x, back;
-      for (int k = 0; k < 3; ++k)
-        x[k] = (corner >> k & 1 ? part.box.high[k] : part.box.low[k]) - motions[p].translation[k];
-      const std::array<double, 9>& m = motions[p].rotation;
-      for (int k = 0; k < 3; ++k) back[k] = std::fma(m[k], x[0], std::fma(m[3 + k], x[1], m[6 + k] * x[2]));
-      box.add(back);
+      Point x;
+      for (int k = 0; k < 3; ++k) x[k] = corner >> k & 1 ? part.box.high[k] : part.box.low[k];
+      box.add(motions[p].back(x));
     }
     for (int k = 0; k < 3; ++k) {
       const double pad = 1e-14 * (std::fabs(box.low[k]) + std::fabs(box.high[k]) + geometry.radius);

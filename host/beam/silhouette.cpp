@@ -50,10 +50,8 @@ class Rasteriser {
  private:
   /// A point of a part, in the beam's axes.
   Corner corner(const RigidMotion& motion, const double* x) const {
-    const double p[3] = {x[0] - motion.translation[0], x[1] - motion.translation[1], x[2] - motion.translation[2]};
-    const std::array<double, 9>& m = motion.rotation;
-    const vec3 body = v3(m[0] * p[0] + m[3] * p[1] + m[6] * p[2], m[1] * p[0] + m[4] * p[1] + m[7] * p[2],
-                         m[2] * p[0] + m[5] * p[1] + m[8] * p[2]);
+    const Point p = motion.back({{x[0], x[1], x[2]}});
+    const vec3 body = v3(p[0], p[1], p[2]);
     return {v3_dot(grid_.u, body), v3_dot(grid_.v, body), v3_dot(grid_.toward, body)};
   }
 

@@ -347,6 +347,14 @@ Geometry build_geometry(const Scene& scene, bool trees) {
   return Packer(scene, trees).pack();
 }
 
+Point RigidMotion::back(const Point& part) const {
+  const std::array<double, 9>& m = rotation;
+  Point x, body;
+  for (int k = 0; k < 3; ++k) x[k] = part[k] - translation[k];
+  for (int k = 0; k < 3; ++k) body[k] = std::fma(m[k], x[0], std::fma(m[3 + k], x[1], m[6 + k] * x[2]));
+  return body;
+}
+
 RigidMotion part_motion(const Scene& scene, const Part& part, const Vec3& source, const Vec3& observer) {
   RigidMotion motion;
   if (part.hinged_component < 0) return motion;

@@ -31,6 +31,9 @@ struct Part {
 struct RigidMotion {
   std::array<double, 9> rotation{{1, 0, 0, 0, 1, 0, 0, 0, 1}};
   Point translation{{0, 0, 0}};
+
+  /// Where a point of the part is in the body.
+  Point back(const Point& part) const;
 };
 
 struct Geometry {

@@ -5,11 +5,22 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "device/device_impl.hpp"
 
 namespace clray {
+
+/// Throws Error(input) if the device cannot hold so many bytes in one buffer: `what` need them, with `fewer` of
+/// something they would need less.
+void check_buffer_size(OpenedDevice& opened, double bytes, const char* what, const char* fewer);
+
+/// The same for the sums of a pass.
+inline void check_sums_size(OpenedDevice& opened, std::uint64_t sums) {
+  check_buffer_size(opened, 8.0 * static_cast<double>(sums), "the detectors",
+                    "bins, pixels, orientations or wavelengths");
+}
 
 /// An uninitialised buffer of `count` elements, or of one if count is 0, as OpenCL knows no empty buffer.
 template <class T>

@@ -25,13 +25,17 @@ int exponent_above(double x) {
   return std::max(e, kLeastExponent);
 }
 
-vec3 to_body(const RigidMotion& motion, const std::array<double, 3>& part, const Point& centre) {
-  const std::array<double, 9>& m = motion.rotation;
-  const double x = part[0] - motion.translation[0], y = part[1] - motion.translation[1],
-               z = part[2] - motion.translation[2];
-  return v3(std::fma(m[0], x, std::fma(m[3], y, m[6] * z)) - centre[0],
-            std::fma(m[1], x, std::fma(m[4], y, m[7] * z)) - centre[1],
-            std::fma(m[2], x, std::fma(m[5], y, m[8] * z)) - centre[2]);
+vec3 to_body(const RigidMotion& motion, const Point& part, const Point& centre) {
+  const Point x = motion.back(part);
+  return v3(x[0] - centre[0], x[1] - centre[1], x[2] - centre[2]);
+}
+
+void set_scales(double area, ClrayFace* f) {
+  f->area_scale = std::ldexp(1.0, kSumBits - exponent_above(area));
+  const double length = std::max(f->box[1] - f->box[0], f->box[3] - f->box[2]);
+  const double depth = std::max(std::fabs(f->depth[1]), std::fabs(f->depth[2]));
+  f->inv_length = std::ldexp(1.0, -exponent_above(length));
+  f->inv_depth = depth > 0.0 ? std::ldexp(1.0, -exponent_above(depth)) : 1.0;
 }
 
 class Builder {
@@ -39,12 +43,9 @@ class Builder {
   Builder(const Geometry& geometry, const MaterialTable& materials, const vec3& toward, const vec3& reference,
           std::uint32_t view)
       : geometry_(geometry), materials_(materials), view_(view) {
-    out_.toward = toward;
+    static_cast<BeamFrame&>(out_) = BeamFrame(toward, 2.0 * geometry.radius);
     out_.faces.reserve(geometry.primitives.size());
     out_.origins.reserve(geometry.primitives.size());
-    v3_frame(toward, &out_.axis_x, &out_.axis_y);
-    out_.size = 2.0 * geometry.radius;
-    out_.margin = kSamePlace * out_.size;
     const Point& c = geometry.centre;
     reference_depth_ = v3_dot(toward, v3_sub(reference, v3(c[0], c[1], c[2])));
   }
@@ -126,65 +127,19 @@ class Builder {
     return kept;
   }
 
-  void triangle(std::uint32_t primitive, const vec3& a, vec3 b, vec3 c) {
-    const vec3 cross = v3_cross(v3_sub(b, a), v3_sub(c, a));
-    const double length = v3_length(cross);
-    if (!(length > 0.0)) return;
-    vec3 n = v3(cross.x / length, cross.y / length, cross.z / length);
-    const double along = v3_dot(n, out_.toward);
-    if (std::fabs(along) < kGrazing) return;
-    const bool front = along > 0.0;
-    if (!front) {
-      std::swap(b, c);
-      n = v3_neg(n);
-    }
+  void triangle(std::uint32_t primitive, const vec3& a, const vec3& b, const vec3& c) {
     ClrayFace f{};
-    const vec3 corners[3] = {a, b, c};
-    double depth[3];
-    for (int k = 0; k < 3; ++k) {
-      f.x[k] = v3_dot(out_.axis_x, corners[k]);
-      f.y[k] = v3_dot(out_.axis_y, corners[k]);
-      depth[k] = v3_dot(out_.toward, corners[k]);
-      f.body[3 * k] = corners[k].x;
-      f.body[3 * k + 1] = corners[k].y;
-      f.body[3 * k + 2] = corners[k].z;
-    }
-    const double area2 = difference_of_products(f.x[1] - f.x[0], f.y[2] - f.y[0], f.x[2] - f.x[0], f.y[1] - f.y[0]);
-    if (!(area2 > 0.0)) return;
-    const double cosine = std::fabs(along);
-    f.slope_x = -v3_dot(n, out_.axis_x) / cosine;
-    f.slope_y = -v3_dot(n, out_.axis_y) / cosine;
-    f.depth0 = depth[0];
-    for (int k = 0; k < 3; ++k) f.depth[k] = depth[k] - depth[0];
-    f.normal[0] = n.x;
-    f.normal[1] = n.y;
-    f.normal[2] = n.z;
-    f.offset = v3_dot(n, a);
-    f.box[0] = *std::min_element(f.x, f.x + 3);
-    f.box[1] = *std::max_element(f.x, f.x + 3);
-    f.box[2] = *std::min_element(f.y, f.y + 3);
-    f.box[3] = *std::max_element(f.y, f.y + 3);
-    f.nearest = *std::max_element(depth, depth + 3);
-    f.margin = 4.0 * out_.margin / cosine;
-    set_scales(area2, &f);
+    const std::optional<FaceSide> side = place_face(out_, a, b, c, &f);
+    if (!side) return;
     f.path_m = -2.0 * (f.depth0 - reference_depth_);
     f.view = view_;
-    push(primitive, front, cosine, f);
-    out_.areas.push_back(0.5 * area2);
+    push(primitive, *side, f);
   }
 
-  static void set_scales(double area2, ClrayFace* f) {
-    f->area_scale = std::ldexp(1.0, kSumBits - exponent_above(0.5 * area2));
-    const double length = std::max(f->box[1] - f->box[0], f->box[3] - f->box[2]);
-    const double depth = std::max(std::fabs(f->depth[1]), std::fabs(f->depth[2]));
-    f->inv_length = std::ldexp(1.0, -exponent_above(length));
-    f->inv_depth = depth > 0.0 ? std::ldexp(1.0, -exponent_above(depth)) : 1.0;
-  }
-
-  void push(std::uint32_t primitive, bool front, double cosine, ClrayFace f) {
+  void push(std::uint32_t primitive, const FaceSide& side, ClrayFace f) {
     const ClrayPrimitive& p = geometry_.primitives[primitive];
     const bool two_sided = (materials_.rows[p.material].flags & CLRAY_MATERIAL_TWO_SIDED) != 0;
-    const std::uint32_t rank = front ? 0u : two_sided ? 1u : 2u;
+    const std::uint32_t rank = side.front ? 0u : two_sided ? 1u : 2u;
     f.order = rank << kRankBits | p.id;
     const bool first = out_.faces.empty();
     out_.x0 = first ? f.box[0] : std::min(out_.x0, f.box[0]);
@@ -192,7 +147,8 @@ class Builder {
     out_.y0 = first ? f.box[2] : std::min(out_.y0, f.box[2]);
     out_.y1 = first ? f.box[3] : std::max(out_.y1, f.box[3]);
     out_.faces.push_back(f);
-    out_.origins.push_back({primitive, p.material, front || two_sided, cosine});
+    out_.origins.push_back({primitive, p.material, side.front || two_sided, side.cosine});
+    out_.areas.push_back(side.area_m2);
   }
 
   const Geometry& geometry_;
@@ -207,6 +163,54 @@ bool made_of_faces(std::uint32_t shape) {
 }
 
 }  // namespace
+
+BeamFrame::BeamFrame(const vec3& direction, double body_size)
+    : toward(direction), size(body_size), margin(kSamePlace * body_size) {
+  v3_frame(toward, &axis_x, &axis_y);
+}
+
+std::optional<FaceSide> place_face(const BeamFrame& frame, const vec3& a, vec3 b, vec3 c, ClrayFace* face) {
+  const vec3 cross = v3_cross(v3_sub(b, a), v3_sub(c, a));
+  const double length = v3_length(cross);
+  if (!(length > 0.0)) return {};
+  vec3 n = v3(cross.x / length, cross.y / length, cross.z / length);
+  const double along = v3_dot(n, frame.toward), cosine = std::fabs(along);
+  if (cosine < kGrazing) return {};
+  const bool front = along > 0.0;
+  if (!front) {
+    std::swap(b, c);
+    n = v3_neg(n);
+  }
+  ClrayFace& f = *face;
+  const vec3 corners[3] = {a, b, c};
+  double depth[3];
+  for (int k = 0; k < 3; ++k) {
+    f.x[k] = v3_dot(frame.axis_x, corners[k]);
+    f.y[k] = v3_dot(frame.axis_y, corners[k]);
+    depth[k] = v3_dot(frame.toward, corners[k]);
+    f.body[3 * k] = corners[k].x;
+    f.body[3 * k + 1] = corners[k].y;
+    f.body[3 * k + 2] = corners[k].z;
+  }
+  const double area2 = difference_of_products(f.x[1] - f.x[0], f.y[2] - f.y[0], f.x[2] - f.x[0], f.y[1] - f.y[0]);
+  if (!(area2 > 0.0)) return {};
+  f.slope_x = -v3_dot(n, frame.axis_x) / cosine;
+  f.slope_y = -v3_dot(n, frame.axis_y) / cosine;
+  f.depth0 = depth[0];
+  for (int k = 0; k < 3; ++k) f.depth[k] = depth[k] - depth[0];
+  f.normal[0] = n.x;
+  f.normal[1] = n.y;
+  f.normal[2] = n.z;
+  f.offset = v3_dot(n, a);
+  f.box[0] = *std::min_element(f.x, f.x + 3);
+  f.box[1] = *std::max_element(f.x, f.x + 3);
+  f.box[2] = *std::min_element(f.y, f.y + 3);
+  f.box[3] = *std::max_element(f.y, f.y + 3);
+  f.nearest = *std::max_element(depth, depth + 3);
+  f.margin = 4.0 * frame.margin / cosine;
+  set_scales(0.5 * area2, &f);
+  return FaceSide{front, cosine, 0.5 * area2};
+}
 
 bool made_of_polygons(const Geometry& geometry) {
   for (const Part& part : geometry.parts) {

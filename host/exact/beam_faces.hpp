@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "body/geometry.hpp"
@@ -20,14 +21,32 @@ struct FaceOrigin {
   double mu = 0.0;              ///< cosine of the angle between its normal and the source
 };
 
-struct BeamFaces {
+/// A frame across a beam, with depth toward the source. Its origin is the body's centre.
+struct BeamFrame {
+  BeamFrame() = default;
+  BeamFrame(const vec3& toward, double size);
+
+  vec3 axis_x{}, axis_y{}, toward{};
+  double size = 0.0;    ///< of the body
+  double margin = 0.0;  ///< distances within it are zero
+};
+
+/// How a beam meets a face.
+struct FaceSide {
+  bool front = true;     ///< the side that its corners go round counter-clockwise is met
+  double cosine = 1.0;   ///< of the angle between its normal and the source
+  double area_m2 = 0.0;  ///< across the beam
+};
+
+/// Sets what the corners decide of a face: all but path, view, order and the scale of bins. Nothing, where the beam
+/// meets it edge-on.
+std::optional<FaceSide> place_face(const BeamFrame& frame, const vec3& a, vec3 b, vec3 c, ClrayFace* face);
+
+struct BeamFaces : BeamFrame {
   std::vector<ClrayFace> faces;  ///< by `nearest` from great to small, then by `order`
   std::vector<FaceOrigin> origins;
   std::vector<double> areas;                      ///< across the beam
-  vec3 axis_x{}, axis_y{}, toward{};              ///< of the beam frame, whose origin is the body's centre
   double x0 = 0.0, x1 = 0.0, y0 = 0.0, y1 = 0.0;  ///< the rectangle around the faces
-  double size = 0.0;                              ///< of the body
-  double margin = 0.0;                            ///< distances within it are zero
 };
 
 /// Whether all that can be hit is made of polygons, so that visibility can be solved.

@@ -12,18 +12,21 @@
 
 namespace clray {
 
+constexpr std::uint64_t kDefaultRays = 1u << 22;  ///< over all views together, with no stopping option
+constexpr std::uint64_t kFirstPoints = 1u << 10;  ///< of a view's first step, per replicate
+
 /// What a course is given.
 struct CourseRules {
-  std::uint64_t first_points = 1u << 10;  ///< per replicate, of the first step
-  std::uint64_t fixed_points = 0;         ///< not 0: that many, and no search
-  std::uint64_t least_points = 0;         ///< of a confirmation
-  std::uint64_t most_points = 0;          ///< of a search
-  std::uint64_t enough_points = 0;        ///< from which on a total of zero counts as zero
-  std::uint64_t least_to_stop = 1;        ///< of fixed points, before the target ends them
-  double target = 0.0;                    ///< 95 % half-width over the value; 0: none
-  bool target_asked = false;              ///< by the user
-  double t95 = 2.0;                       ///< half-width over standard error
-  const char* fixed_end = "rays";         ///< what ends fixed points: see Result::stopped_by
+  std::uint64_t first_points = kFirstPoints;  ///< per replicate, of the first step
+  std::uint64_t fixed_points = 0;             ///< not 0: that many, and no search
+  std::uint64_t least_points = 0;             ///< of a confirmation
+  std::uint64_t most_points = 0;              ///< of a search
+  std::uint64_t enough_points = 0;            ///< from which on a total of zero counts as zero
+  std::uint64_t least_to_stop = 1;            ///< of fixed points, before the target ends them
+  double target = 0.0;                        ///< 95 % half-width over the value; 0: none
+  bool target_asked = false;                  ///< by the user
+  double t95 = 2.0;                           ///< half-width over standard error
+  const char* fixed_end = "rays";             ///< what ends fixed points: see Result::stopped_by
 };
 
 /// Points to trace: a phase's points are numbered from 0, on the scrambles of `epoch`.

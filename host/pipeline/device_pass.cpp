@@ -2,11 +2,8 @@
 // See device_pass.hpp.
 #include "pipeline/device_pass.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
-#include "clray/error.hpp"
 #include "device/buffers.hpp"
 
 namespace clray {
@@ -34,7 +31,7 @@ DevicePass::DevicePass(OpenedDevice& device, const PassPlan& plan, const Geometr
   const ProgramOptions& options = plan.program.options;
   const std::string source = program_source(opened_, "trace.cl", options, files);
   kernel_ = make_kernel(opened_, build_source(opened_, "trace.cl", source, options.warnings_are_errors), "clray_trace");
-  check_size(plan);
+  check_sums_size(opened_, plan.layout.values);
   has_wide_ = options.defines.at("CLRAY_WIDE") == "1";
   const PassBuffers in(plan, geometry);
 #define CLRAY_FILL(type, name) buffers_[#name] = filled(opened_, in.name);
@@ -45,17 +42,6 @@ DevicePass::DevicePass(OpenedDevice& device, const PassPlan& plan, const Geometr
     CLRAY_BUFFERS(CLRAY_BIND)
 #undef CLRAY_BIND
   });
-}
-
-void DevicePass::check_size(const PassPlan& plan) const {
-  const double bytes = 8.0 * static_cast<double>(plan.layout.values);
-  const double limit = with_cl_errors(
-      opened_.info.name, [&] { return static_cast<double>(opened_.device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>()); });
-  if (bytes > limit)
-    throw Error(ErrorCode::input,
-                fmt::format("the detectors need {:.3g} GiB in one buffer, {} gives at most {:.3g}: fewer bins, pixels, "
-                            "orientations or wavelengths are needed",
-                            bytes / 1073741824.0, opened_.info.name, limit / 1073741824.0));
 }
 
 void DevicePass::clear(const PassPlan& plan) {

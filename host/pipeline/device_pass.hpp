@@ -38,8 +38,6 @@ class DevicePass {
   std::uint64_t slice_items = 4096;  ///< of the next launch
 
  private:
-  void check_size(const PassPlan& plan) const;
-
   OpenedDevice& opened_;
   cl::Kernel kernel_;
   std::map<std::string, cl::Buffer> buffers_;  // by the names of shared/buffers.h

@@ -54,12 +54,15 @@ ExactDevice::ExactDevice(OpenedDevice& device, const ProgramOptions& options, co
 ExactDevice::ExactDevice(OpenedDevice& device, const cl::Kernel& kernel, const ExactNumbers& numbers,
                          const std::vector<ClrayBinning>& binnings, std::uint64_t bins)
     : opened_(device), numbers_(numbers), binnings_(binnings), bin_count_(bins), kernel_(kernel) {
+  check_sums_size(opened_, bins);
   binning_ = make_buffer(opened_, binnings);
   bins_ = make_zero_buffer<i64>(opened_, bins);
 }
 
 void ExactDevice::begin_group(const FaceGroup& group) {
   group_ = &group;
+  check_buffer_size(opened_, static_cast<double>(sizeof(ClrayFace)) * static_cast<double>(group.faces.size()),
+                    "the faces of a view", "faces");
   faces_ = make_buffer(opened_, group.faces);
   weights_ = make_buffer(opened_, group.weights);
   sums_ = make_zero_buffer<i64>(opened_, group.faces.size() * CLRAY_FACE_SUMS);

@@ -4,11 +4,11 @@
 #include "pipeline/exact_pass.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "body/portable_tables.hpp"
 #include "exact/tiles.hpp"
+#include "pipeline/clock.hpp"
 #include "pipeline/detector/room.hpp"
 #include "pipeline/exact_device.hpp"
 #include "scene/tables.hpp"
@@ -18,10 +18,6 @@ namespace {
 
 constexpr std::size_t kGroupFaces = 1u << 16;  // of a group of views, unless one view has more
 constexpr std::size_t kBatchItems = 1u << 15;  // of a launch: an interrupt waits for one
-
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 /// The windows of the delay detectors among the histograms of a pass, and the numbers that all of them have.
 std::vector<ClrayBinning> binnings_of(const PassPlan& plan, std::uint64_t* numbers) {

@@ -9,6 +9,7 @@
 #include "clray/error.hpp"
 #include "device/buffers.hpp"
 #include "device/kernel_cache.hpp"
+#include "exact/beam_faces.hpp"
 #include "exact/portable_faces.hpp"
 #include "pipeline/exact_device.hpp"
 #include "shared/philox.h"
@@ -18,8 +19,14 @@ namespace {
 
 constexpr std::uint32_t kFaces = 48, kBins = 64;
 
+/// The beam that meets the test's faces.
+BeamFrame test_frame() {
+  return {v3(0.0, 0.0, 1.0), 4.0};
+}
+
 /// A soup of triangles on a coarse lattice, so that many share corners, edges and planes, or lie in one place.
 std::vector<ClrayFace> soup() {
+  const BeamFrame frame = test_frame();
   std::vector<ClrayFace> faces;
   for (std::uint32_t n = 0; faces.size() < kFaces; ++n) {
     vec3 w[3];
@@ -30,38 +37,9 @@ std::vector<ClrayFace> soup() {
       const auto lattice = [&](int i) { return (static_cast<double>(random[i] % 9u) - 4.0) / 4.0; };
       w[k] = v3(lattice(0), lattice(1), n % 3 == 0 ? 0.25 : lattice(2));
     }
-    vec3 normal = v3_cross(v3_sub(w[1], w[0]), v3_sub(w[2], w[0]));
-    if (normal.z == 0.0) continue;
-    if (normal.z < 0.0) {
-      std::swap(w[1], w[2]);
-      normal = v3_neg(normal);
-    }
-    normal = v3_unit(normal);
     ClrayFace f{};
-    for (int k = 0; k < 3; ++k) {
-      f.x[k] = w[k].x;
-      f.y[k] = w[k].y;
-      f.depth[k] = w[k].z - w[0].z;
-      f.body[3 * k] = w[k].x;
-      f.body[3 * k + 1] = w[k].y;
-      f.body[3 * k + 2] = w[k].z;
-    }
-    f.depth0 = w[0].z;
-    f.slope_x = -normal.x / normal.z;
-    f.slope_y = -normal.y / normal.z;
-    f.normal[0] = normal.x;
-    f.normal[1] = normal.y;
-    f.normal[2] = normal.z;
-    f.offset = v3_dot(normal, w[0]);
-    f.box[0] = std::min({w[0].x, w[1].x, w[2].x});
-    f.box[1] = std::max({w[0].x, w[1].x, w[2].x});
-    f.box[2] = std::min({w[0].y, w[1].y, w[2].y});
-    f.box[3] = std::max({w[0].y, w[1].y, w[2].y});
-    f.nearest = std::max({w[0].z, w[1].z, w[2].z});
-    f.margin = 1e-11 / normal.z;
-    f.area_scale = 0x1p59;
-    f.inv_length = f.inv_depth = 0.5;
-    f.path_m = -2.0 * w[0].z;
+    if (!place_face(frame, w[0], w[1], w[2], &f)) continue;
+    f.path_m = -2.0 * f.depth0;
     f.bin_scale = 0x1p50;
     f.order = static_cast<std::uint32_t>(faces.size());
     faces.push_back(f);
@@ -96,7 +74,9 @@ void run_exact_self_test(OpenedDevice& opened, const std::string& source, const 
   std::vector<ClrayBinning> windows;
   for (std::uint32_t n = 0; n < numbers.binnings; ++n) windows.push_back({-1.5, kBins / (3.0 + n), n * row, kBins});
   ItemBatch batch;
-  batch.tiles = {{-1.0, 0.1, -1.0, 1.0, 4.0, 1e-12, 0, kFaces}, {0.1, 1.0, -1.0, 1.0, 4.0, 1e-12, 0, kFaces}};
+  const BeamFrame frame = test_frame();
+  batch.tiles = {{-1.0, 0.1, -1.0, 1.0, frame.size, frame.margin, 0, kFaces},
+                 {0.1, 1.0, -1.0, 1.0, frame.size, frame.margin, 0, kFaces}};
   for (std::uint32_t f = 0; f < kFaces; ++f) {
     const ClrayFace& face = group.faces[f];
     batch.lists.push_back({{face.box[0], face.box[1], face.box[2], face.box[3]}, face.nearest, f, 0});

@@ -8,6 +8,7 @@
 
 #include "clray/error.hpp"
 #include "exact/beam_faces.hpp"
+#include "pipeline/course.hpp"
 #include "pipeline/detector/room.hpp"
 #include "scene/tables.hpp"
 
@@ -17,7 +18,6 @@ namespace {
 // Seconds on one core, of a face of a view and of a ray, as a grid of 614 Sun directions on topex.obj took
 // (docs/exact.md). Their ratio decides.
 constexpr double kSecondsPerFace = 7e-6, kSecondsPerRay = 1.4e-6;
-constexpr double kDefaultRays = 1u << 22, kLeastRaysPerView = 1u << 14;
 constexpr double kMuchDearer = 10.0;
 
 /// Whether a detector's sums can be made from visible faces. What no sum of its own has reads those of others.
@@ -72,8 +72,10 @@ double seconds_to_solve(const Geometry& geometry, std::size_t views) {
   return kSecondsPerFace * static_cast<double>(geometry.primitives.size()) * static_cast<double>(views);
 }
 
-double seconds_of_rays(std::size_t views) {
-  return kSecondsPerRay * std::max(kDefaultRays, kLeastRaysPerView * static_cast<double>(views));
+/// What as many rays take as are traced by default.
+double seconds_of_rays(std::size_t views, int replicates) {
+  const double least = static_cast<double>(kFirstPoints) * replicates * static_cast<double>(views);
+  return kSecondsPerRay * std::max(static_cast<double>(kDefaultRays), least);
 }
 
 }  // namespace
@@ -103,7 +105,7 @@ MethodChoice choose_method(const Scene& scene, const Geometry& geometry, const D
   // An exact pass that time cuts off has no result.
   if (t.time_limit_s > 0.0 && seconds > 0.5 * t.time_limit_s)
     return {false, fmt::format("solving it may take longer than the time limit of {:g} s", t.time_limit_s)};
-  if (seconds > kMuchDearer * seconds_of_rays(views)) {
+  if (seconds > kMuchDearer * seconds_of_rays(views, t.replicates)) {
     return {false, fmt::format("{} faces in {} views would take much longer than rays; --method exact solves them",
                                geometry.primitives.size(), views)};
   }

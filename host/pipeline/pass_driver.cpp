@@ -5,27 +5,22 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <map>
 #include <tuple>
 
 #include "clray/error.hpp"
+#include "pipeline/clock.hpp"
 #include "pipeline/course.hpp"
 #include "pipeline/estimate.hpp"
 
 namespace clray {
 namespace {
 
-constexpr std::uint64_t kLeastRays = 1u << 22;     // over all views, with no stopping option
 constexpr std::uint64_t kZeroRays = 1u << 20;      // after which a zero total counts as zero
 constexpr std::uint64_t kMostPoints = 1ull << 32;  // of a 32-bit Sobol sequence
 constexpr double kDefaultTarget = 0.01;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 std::uint64_t power_of_two_above(std::uint64_t value) {
   std::uint64_t p = 1;
@@ -71,7 +66,7 @@ CourseRules rules_of(const PassPlan& plan, const TraceOptions& o) {
     rules.most_points = std::clamp<std::uint64_t>(o.max_rays / replicates, 1, kMostPoints);
     if (!rules.target_asked) {
       rules.target = kDefaultTarget;
-      rules.least_points = power_of_two_above(kLeastRays / replicates / plan.beams.views.size());
+      rules.least_points = power_of_two_above(kDefaultRays / replicates / plan.beams.views.size());
     }
   }
   if (rules.fixed_points > kMostPoints)

@@ -5,13 +5,13 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <exception>
 #include <mutex>
 #include <optional>
 #include <thread>
 
 #include "clray/error.hpp"
+#include "pipeline/clock.hpp"
 #include "pipeline/device_pass.hpp"
 #include "pipeline/host_pass.hpp"
 #include "pipeline/traced_self_test.hpp"
@@ -23,10 +23,6 @@ namespace {
 constexpr double kSliceSeconds = 0.15;                  // of a launch: an interrupt waits no longer
 constexpr std::uint64_t kMostContributions = 1u << 24;  // per accumulator between drains (scales())
 constexpr std::uint32_t kChunk = 16;                    // points of a work-item
-
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 }  // namespace
 

@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <optional>
 
@@ -13,6 +12,7 @@
 #include "clray/error.hpp"
 #include "clray/pass.hpp"
 #include "clray/result.hpp"
+#include "pipeline/clock.hpp"
 #include "pipeline/exact_pass.hpp"
 #include "pipeline/method.hpp"
 #include "pipeline/outcome.hpp"
@@ -25,10 +25,6 @@
 
 namespace clray {
 namespace {
-
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 void check_diagnostics(const Result& result, bool allowed) {
   const Diagnostics& d = result.diagnostics;
