@@ -17,6 +17,8 @@ struct Options {
   double max_seconds_per_case = 0.0;  ///< of tracing, by a pilot run; 0: no limit
   std::vector<std::string> devices;   ///< as for --device of clray; empty: the tests' device
   std::string runs;                   ///< file for a row per run, seed and ray count; empty: none
+  std::vector<std::string> meshes;    ///< files of further bodies, of `end`
+  double max_seconds = 4.0;           ///< of one run of `end`: a method's efforts end there
   std::vector<std::string> only;      ///< names that a case must contain one of; empty: all
 };
 
@@ -24,6 +26,7 @@ int error(const Options& options);       ///< error against run time (docs/error
 int stability(const Options& options);   ///< stiff and extreme cases (docs/stability.md)
 int specialise(const Options& options);  ///< generic against specialised programs
 int sweep(const Options& options);       ///< cost of orientations
+int end(const Options& options);         ///< time to given errors, against a tracer on Embree
 int shots(const Options& options);       ///< first-photon shots per second
 
 /// Whether `name` is asked for.

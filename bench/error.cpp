@@ -43,9 +43,10 @@ Curve measure_and_print(const ErrorCase& c, const Sampler& sampler, int most, co
 
 DeviceCurves measure_all(const std::vector<ErrorCase>& cases, const Options& options, clray::Device& device,
                          std::string* runs) {
-  DeviceCurves all{device_line(device.info()), {}};
+  DeviceCurves all{device_line(device.info()), {}, {}};
   for (const ErrorCase& c : cases) {
     if (!wanted(options, c.name)) continue;
+    if (const std::optional<Solved> solved = solve(c, device)) all.solved.push_back(*solved);
     const int most = affordable(c, options, device);
     for (const Sampler& sampler : kSamplers)
       all.curves.push_back(measure_and_print(c, sampler, most, options, device, runs));
@@ -80,6 +81,8 @@ std::string section(const DeviceCurves& d, const std::string& picture, const Opt
   const std::string replicates = replicates_table(options, device);
   return fmt::format(
       "\n## {}\n{}\n![error against time]({})\n\n### Totals at the largest ray count\n\n{}\n"
+      "### The exact method\n\nCases that it takes ([exact.md](exact.md)); in the picture a cross, at its time and its "
+      "rounding bound.\n\n{}\n"
       "### Rays to 0.1 %\n\nRays at which the rms true error falls below 0.1 % for good, interpolated between the "
       "doublings measured.\n~: beyond the last, by the slope.\n\n{}\n"
       "### Claims\n\nRms true error over rms claimed, by rays: 1 is fair, above 1 claims too little.\n\n{}\n"
@@ -87,8 +90,8 @@ std::string section(const DeviceCurves& d, const std::string& picture, const Opt
       "random rays leave 10 hits or more on average, by\nthe closed form.\n\n{}\n"
       "### Where the time goes\n\nSeconds at the largest ray count, medians; programs come from the cache after the "
       "first run.\n\n{}{}",
-      d.device, stopped_early(d.curves, options), picture, totals_table(d.curves), rays_table(d.curves),
-      fairness_table(d.curves), bins_table(d.curves), split_table(d.curves),
+      d.device, stopped_early(d.curves, options), picture, totals_table(d.curves), solved_table(d.solved),
+      rays_table(d.curves), fairness_table(d.curves), bins_table(d.curves), split_table(d.curves),
       replicates.empty()
           ? ""
           : "\n### The cost of a claim\n\nThe same 2^16 stratified rays as 4, 16 and 32 replicates.\n\n" + replicates);
@@ -115,7 +118,7 @@ int error(const Options& asked) {
     all.push_back(measure_all(cases, options, device, &runs));
     if (all.back().curves.empty()) return 2;
     const std::string picture = stem + (i == 0 ? "" : "-" + std::to_string(i + 1)) + ".png";
-    plot_error(options.out, picture, all.back().curves);
+    plot_error(options.out, picture, all.back());
     text += section(all.back(), picture, options, device);
   }
   write_text(options.out, stem + ".csv", error_csv(all));

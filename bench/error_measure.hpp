@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -49,6 +50,15 @@ struct Curve {
   std::map<int, Bins> bins;  ///< by log2 of rays
   Split split;
 };
+
+/// What the exact method finds of a case: relative to the closed form, and the median of its tracing times.
+struct Solved {
+  const ErrorCase* which = nullptr;
+  double truth = 0.0, bound = 0.0;
+  double seconds = 0.0;
+};
+/// Nothing where the case has what cannot be solved, or no pulse.
+std::optional<Solved> solve(const ErrorCase& which, clray::Device& device);
 
 double rms(const std::vector<double>& values);
 

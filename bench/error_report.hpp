@@ -13,6 +13,7 @@ namespace clray_bench {
 struct DeviceCurves {
   std::string device;
   std::vector<Curve> curves;
+  std::vector<Solved> solved;  ///< the cases that the exact method takes
 };
 
 /// A row per case, sampler and device with the quantiles of every ray count.
@@ -26,7 +27,9 @@ std::string split_table(const std::vector<Curve>& curves);     ///< where the ti
 /// What splitting the same rays into more replicates costs in true error, and what it buys in the claim's steadiness.
 std::string replicates_table(const Options& options, clray::Device& device);
 
+std::string solved_table(const std::vector<Solved>& solved);  ///< the exact method: true error, bound and time
+
 /// Draws `folder`/`name`; a panel a case.
-void plot_error(const std::string& folder, const std::string& name, const std::vector<Curve>& curves);
+void plot_error(const std::string& folder, const std::string& name, const DeviceCurves& all);
 
 }  // namespace clray_bench

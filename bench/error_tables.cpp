@@ -61,7 +61,8 @@ Crossing rays_to(const Curve& curve, double target) {
 
 std::string error_csv(const std::vector<DeviceCurves>& all) {
   std::string csv =
-      "# relative error of the total against its closed form, over seeds: true, and claimed standard error\n"
+      "# relative error of the total against its closed form, over seeds: true, and claimed standard error (exact: "
+      "rounding bound, rays 0)\n"
       "device,case,sampler,rays,seeds,true_median,true_90,true_rms,claimed_median,claimed_90,claimed_rms,trace_s\n";
   for (const DeviceCurves& d : all) {
     for (const Curve& c : d.curves) {
@@ -71,6 +72,9 @@ std::string error_csv(const std::vector<DeviceCurves>& all) {
                            quantile(p.truth, 0.9), rms(p.truth), median(p.claim), quantile(p.claim, 0.9), rms(p.claim),
                            median(p.seconds));
     }
+    for (const Solved& s : d.solved)
+      csv += fmt::format("\"{}\",{},exact,0,1,{:.4e},{:.4e},{:.4e},{:.4e},{:.4e},{:.4e},{:.6f}\n", d.device,
+                         s.which->name, s.truth, s.truth, s.truth, s.bound, s.bound, s.bound, s.seconds);
   }
   return csv;
 }
@@ -85,6 +89,14 @@ std::string totals_table(const std::vector<Curve>& curves) {
                     percent(quantile(p.truth, 0.9)), percent(median(p.claim)), percent(quantile(p.claim, 0.9)),
                     fmt::format("{:.2f}", slope_of(c)), time_to(c, 1e-2), time_to(c, 1e-3), time_to(c, 1e-4)});
   }
+  return markdown(rows);
+}
+
+std::string solved_table(const std::vector<Solved>& solved) {
+  std::vector<std::vector<std::string>> rows = {{"case", "true error", "rounding bound", "trace, s"}};
+  for (const Solved& s : solved)
+    rows.push_back({s.which->name, fmt::format("{:.1e}", s.truth), fmt::format("{:.1e}", s.bound),
+                    fmt::format("{:.2g}", s.seconds)});
   return markdown(rows);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// clray-bench error|stability|specialise|sweep|shots: measures clray through its public interface. The device is the
-// one that CLRAY_TEST_DEVICE names, else the CPU.
+// clray-bench error|end|stability|specialise|sweep|shots: measures clray through its public interface. The device is
+// the one that CLRAY_TEST_DEVICE names, else the CPU.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
@@ -33,6 +33,17 @@ int main(int argc, char** argv) {
   add("stability", "the stiff and extreme cases", clray_bench::stability);
   add("specialise", "generic against specialised programs", clray_bench::specialise);
   add("sweep", "cost of orientations", clray_bench::sweep);
+  CLI::App* end =
+      add("end", "time to given errors of the total and of bins, against a tracer on Embree", clray_bench::end);
+  end->add_option("--mesh", options.meshes, "a mesh as a further body; repeatable")->check(CLI::ExistingFile);
+  end->add_option("--seeds", options.seeds, "runs per method and effort")
+      ->capture_default_str()
+      ->check(CLI::Range(5, 1000));
+  end->add_option("--max-seconds", options.max_seconds,
+                  "no effort of which a run takes longer; what lies beyond is extrapolated")
+      ->capture_default_str();
+  end->add_option("--device", options.devices, "as for clray (default: that of CLRAY_TEST_DEVICE, else cpu)")
+      ->expected(1);
   add("shots", "first-photon shots per second", clray_bench::shots);
   CLI11_PARSE(app, argc, argv);
   try {
