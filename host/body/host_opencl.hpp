@@ -48,8 +48,10 @@ inline i64 convert_long_rte(f64 x) {
 inline void atom_add(volatile i64* p, i64 value) {
   *p = static_cast<i64>(static_cast<u64>(*p) + static_cast<u64>(value));
 }
-inline void atomic_add(volatile u32* p, u32 value) {
-  *p = *p + value;
+inline u32 atomic_add(volatile u32* p, u32 value) {
+  const u32 before = *p;
+  *p = before + value;
+  return before;
 }
 inline void atomic_inc(volatile u32* p) {
   *p = *p + 1u;

@@ -33,21 +33,18 @@ vec3 to_body(const RigidMotion& motion, const Point& part, const Point& centre) 
 void set_scales(double area, ClrayFace* f) {
   f->area_scale = std::ldexp(1.0, kSumBits - exponent_above(area));
   const double length = std::max(f->box[1] - f->box[0], f->box[3] - f->box[2]);
-  const double depth = std::max(std::fabs(f->depth[1]), std::fabs(f->depth[2]));
   f->inv_length = std::ldexp(1.0, -exponent_above(length));
-  f->inv_depth = depth > 0.0 ? std::ldexp(1.0, -exponent_above(depth)) : 1.0;
 }
 
 class Builder {
  public:
-  Builder(const Geometry& geometry, const MaterialTable& materials, const vec3& toward, const vec3& reference,
-          std::uint32_t view)
-      : geometry_(geometry), materials_(materials), view_(view) {
-    static_cast<BeamFrame&>(out_) = BeamFrame(toward, 2.0 * geometry.radius);
+  Builder(const Geometry& geometry, const MaterialTable& materials, const BeamSight& sight)
+      : geometry_(geometry), materials_(materials), sight_(sight) {
+    static_cast<BeamFrame&>(out_) = BeamFrame(sight.toward, 2.0 * geometry.radius);
     out_.faces.reserve(geometry.primitives.size());
     out_.origins.reserve(geometry.primitives.size());
     const Point& c = geometry.centre;
-    reference_depth_ = v3_dot(toward, v3_sub(reference, v3(c[0], c[1], c[2])));
+    reference_ = v3_sub(sight.reference, v3(c[0], c[1], c[2]));
   }
 
   void add(std::uint32_t primitive, const RigidMotion& motion, const std::array<double, 3>* corners, int count) {
@@ -128,15 +125,16 @@ class Builder {
   }
 
   void triangle(std::uint32_t primitive, const vec3& a, const vec3& b, const vec3& c) {
+    const std::uint32_t number = number_++;
     ClrayFace f{};
     const std::optional<FaceSide> side = place_face(out_, a, b, c, &f);
     if (!side) return;
-    f.path_m = -2.0 * (f.depth0 - reference_depth_);
-    f.view = view_;
-    push(primitive, *side, f);
+    set_path(out_, sight_.source, reference_, &f);
+    f.view = sight_.view;
+    push(number, primitive, *side, f);
   }
 
-  void push(std::uint32_t primitive, const FaceSide& side, ClrayFace f) {
+  void push(std::uint32_t number, std::uint32_t primitive, const FaceSide& side, ClrayFace f) {
     const ClrayPrimitive& p = geometry_.primitives[primitive];
     const bool two_sided = (materials_.rows[p.material].flags & CLRAY_MATERIAL_TWO_SIDED) != 0;
     const std::uint32_t rank = side.front ? 0u : two_sided ? 1u : 2u;
@@ -147,14 +145,15 @@ class Builder {
     out_.y0 = first ? f.box[2] : std::min(out_.y0, f.box[2]);
     out_.y1 = first ? f.box[3] : std::max(out_.y1, f.box[3]);
     out_.faces.push_back(f);
-    out_.origins.push_back({primitive, p.material, side.front || two_sided, side.cosine});
+    out_.origins.push_back({number, primitive, p.material, side.front || two_sided, side.cosine});
     out_.areas.push_back(side.area_m2);
   }
 
   const Geometry& geometry_;
   const MaterialTable& materials_;
-  std::uint32_t view_;
-  double reference_depth_ = 0.0;
+  const BeamSight sight_;
+  vec3 reference_{};  // from the body's centre
+  std::uint32_t number_ = 0;
   BeamFaces out_;
 };
 
@@ -197,7 +196,6 @@ std::optional<FaceSide> place_face(const BeamFrame& frame, const vec3& a, vec3 b
   f.slope_x = -v3_dot(n, frame.axis_x) / cosine;
   f.slope_y = -v3_dot(n, frame.axis_y) / cosine;
   f.depth0 = depth[0];
-  for (int k = 0; k < 3; ++k) f.depth[k] = depth[k] - depth[0];
   f.normal[0] = n.x;
   f.normal[1] = n.y;
   f.normal[2] = n.z;
@@ -210,6 +208,31 @@ std::optional<FaceSide> place_face(const BeamFrame& frame, const vec3& a, vec3 b
   f.margin = 4.0 * frame.margin / cosine;
   set_scales(0.5 * area2, &f);
   return FaceSide{front, cosine, 0.5 * area2};
+}
+
+void set_path(const BeamFrame& frame, const vec3& source, const vec3& reference, ClrayFace* face) {
+  ClrayFace& f = *face;
+  const vec3 d = frame.toward, corners[3] = {v3_load(f.body), v3_load(f.body + 3), v3_load(f.body + 6)};
+  const vec3 apart = v3_sub(d, source);
+  f.path_m = -(f.depth0 - v3_dot(d, reference));
+  for (int k = 0; k < 3; ++k) f.path[k] = -(v3_dot(d, corners[k]) - f.depth0);
+  f.path_x = -f.slope_x;
+  f.path_y = -f.slope_y;
+  if (v3_dot(apart, apart) == 0.0) {
+    f.path_m *= 2.0;
+    for (double& path : f.path) path *= 2.0;
+    f.path_x *= 2.0;
+    f.path_y *= 2.0;
+  } else {
+    // Over the face a step across the beam is a step (1, 0, slope_x) or (0, 1, slope_y) in the beam's frame.
+    const double along = v3_dot(source, d);
+    f.path_m -= v3_dot(source, v3_sub(corners[0], reference));
+    for (int k = 0; k < 3; ++k) f.path[k] -= v3_dot(source, v3_sub(corners[k], corners[0]));
+    f.path_x -= std::fma(f.slope_x, along, v3_dot(source, frame.axis_x));
+    f.path_y -= std::fma(f.slope_y, along, v3_dot(source, frame.axis_y));
+  }
+  const double path = std::max(std::fabs(f.path[1]), std::fabs(f.path[2]));
+  f.inv_path = path > 0.0 ? std::ldexp(1.0, -exponent_above(path)) : 1.0;
 }
 
 bool made_of_polygons(const Geometry& geometry) {
@@ -227,8 +250,8 @@ bool made_of_polygons(const Geometry& geometry) {
 }
 
 BeamFaces beam_faces(const Geometry& geometry, const MaterialTable& materials, const std::vector<RigidMotion>& motions,
-                     const vec3& toward, const vec3& reference, std::uint32_t view) {
-  Builder builder(geometry, materials, toward, reference, view);
+                     const BeamSight& sight) {
+  Builder builder(geometry, materials, sight);
   for (std::uint32_t i = 0; i < geometry.primitives.size(); ++i) {
     const ClrayPrimitive& p = geometry.primitives[i];
     const RigidMotion& motion = motions[geometry.part_of_component[p.component]];

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "exact/exact_buffers.h"
 #include "shared/abi.h"
@@ -23,11 +24,14 @@ struct ExactBuffers {
 /// What a device's program is built with.
 struct ExactNumbers {
   std::uint32_t lanes = 1, binnings = 0;
+  bool from_source = true;  ///< an observer is at the source: what is lit is seen
+  bool carry = false;       ///< observers are elsewhere: lit pieces are carried to their views
 };
 
-/// One face in one tile, as a work-item of a device does it, from the fragment numbered `skip` on. Throws Error(bug)
-/// where the fragments that wait grow beyond all bounds.
-void exact_item_on_host(const ExactBuffers& buffers, const ExactNumbers& numbers, std::uint32_t item,
-                        std::uint32_t skip);
+/// One item, as a work-item of a device does it, from the fragment numbered `skip` on: a face in a tile, or (`carried`) a
+/// lit piece in a tile of an observer's view. Appends lit pieces to *lit; `buffers` needs no room for them. Throws
+/// Error(bug) where the fragments that wait grow beyond all bounds.
+void exact_item_on_host(const ExactBuffers& buffers, const ExactNumbers& numbers, bool carried, std::uint32_t item,
+                        std::uint32_t skip, std::vector<ClrayPiece>* lit);
 
 }  // namespace clray

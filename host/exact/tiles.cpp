@@ -21,6 +21,11 @@ struct Rectangle {
   double x0, x1, y0, y1;
 };
 
+/// What a tile holds.
+struct Held {
+  std::vector<std::uint32_t> faces, pieces;
+};
+
 /// A face's edges and depth as a tile asks for them.
 struct Edges {
   std::array<double, 3> dx, dy, tiny;  // direction, and what rounding may add to a side
@@ -29,7 +34,10 @@ struct Edges {
 
 class Cutter {
  public:
-  Cutter(const BeamFaces& beam, const std::function<bool(const TileFaces&)>& leaf) : beam_(beam), leaf_(leaf) {
+  /// `pieces`: null where whole faces are looked for.
+  Cutter(const BeamFaces& beam, const std::vector<ClrayPiece>* pieces,
+         const std::function<bool(const TileFaces&)>& leaf)
+      : beam_(beam), pieces_(pieces), leaf_(leaf), kept_in_(pieces == nullptr ? 0 : beam.faces.size()) {
     edges_.reserve(beam.faces.size());
     for (const ClrayFace& f : beam.faces) {
       Edges e;
@@ -42,51 +50,78 @@ class Cutter {
       e.depth_error = kRounding * beam.size * (1.0 + std::fabs(f.slope_x) + std::fabs(f.slope_y));
       edges_.push_back(e);
     }
+    if (pieces_ == nullptr) return;
+    boxes_.reserve(pieces_->size());
+    for (const ClrayPiece& p : *pieces_) {
+      const auto [x0, x1] = std::minmax_element(p.x, p.x + p.corners);
+      const auto [y0, y1] = std::minmax_element(p.y, p.y + p.corners);
+      boxes_.push_back({*x0, *x1, *y0, *y1});
+    }
   }
 
   bool run() {
-    std::vector<std::uint32_t> all(beam_.faces.size());
-    for (std::uint32_t k = 0; k < all.size(); ++k) all[k] = k;
+    Held all, kept;
+    for (std::uint32_t k = 0; k < beam_.faces.size(); ++k) all.faces.push_back(k);
+    for (std::uint32_t k = 0; k < boxes_.size(); ++k) all.pieces.push_back(k);
     const Rectangle whole{beam_.x0, beam_.x1, beam_.y0, beam_.y1};
-    std::vector<std::uint32_t> kept;
-    keep_seen(whole, all, &kept);
-    return kept.empty() || cut(whole, kept, 0, 0);
+    keep(whole, all, &kept);
+    return idle(kept) || cut(whole, kept, 0, 0);
   }
 
  private:
   /// `stalled`: cuts in a row, down to this tile, that were of no use.
-  bool cut(const Rectangle& r, const std::vector<std::uint32_t>& faces, std::size_t level, int stalled) {
-    if (faces.size() <= kFewFaces || level == kMostLevels) return leaf(r, faces);
+  bool cut(const Rectangle& r, const Held& held, std::size_t level, int stalled) {
+    const std::size_t looked_for = pieces_ == nullptr ? held.faces.size() : held.pieces.size();
+    if (held.faces.size() <= kFewFaces || looked_for * held.faces.size() <= kFewFaces * kFewFaces ||
+        level == kMostLevels)
+      return leaf(r, held);
     if (level == pools_.size()) pools_.emplace_back();
-    std::array<std::vector<std::uint32_t>, 4>& children = pools_[level];
+    std::array<Held, 4>& children = pools_[level];
     const double mx = 0.5 * (r.x0 + r.x1), my = 0.5 * (r.y0 + r.y1);
     const Rectangle quarters[4] = {
         {r.x0, mx, r.y0, my}, {mx, r.x1, r.y0, my}, {r.x0, mx, my, r.y1}, {mx, r.x1, my, r.y1}};
     double sum = 0.0, squares = 0.0;
     for (int k = 0; k < 4; ++k) {
-      children[k].clear();
-      keep_seen(quarters[k], faces, &children[k]);
-      const auto n = static_cast<double>(children[k].size());
+      keep(quarters[k], held, &children[k]);
+      const auto n = static_cast<double>(children[k].faces.size());
       sum += n;
       squares += n * n;
     }
     // A cut is of use where pairs of faces become fewer, or where no face is taken twice (all lie in one quarter). Of
     // many sheets on top of one another, or a fan about a point, no cut is of use, but of a crowd the next one may be.
-    const auto n = static_cast<double>(faces.size());
+    const auto n = static_cast<double>(held.faces.size());
     stalled = squares > 0.75 * n * n && sum > 1.25 * n ? stalled + 1 : 0;
-    if (stalled > kMostStalled) return leaf(r, faces);
+    if (stalled > kMostStalled) return leaf(r, held);
     for (int k = 0; k < 4; ++k) {
-      if (!children[k].empty() && !cut(quarters[k], children[k], level + 1, stalled)) return false;
+      if (!idle(children[k]) && !cut(quarters[k], children[k], level + 1, stalled)) return false;
     }
     return true;
   }
 
-  bool leaf(const Rectangle& r, const std::vector<std::uint32_t>& faces) {
-    largest_first_ = faces;
+  bool leaf(const Rectangle& r, const Held& held) {
+    largest_first_ = held.faces;
     std::sort(largest_first_.begin(), largest_first_.end(), [&](std::uint32_t i, std::uint32_t k) {
       return beam_.areas[i] != beam_.areas[k] ? beam_.areas[i] > beam_.areas[k] : i < k;
     });
-    return leaf_({r.x0, r.x1, r.y0, r.y1, largest_first_});
+    return leaf_({r.x0, r.x1, r.y0, r.y1, largest_first_, held.pieces});
+  }
+
+  /// Whether nothing in a tile is looked for.
+  bool idle(const Held& held) const { return held.faces.empty() || (pieces_ != nullptr && held.pieces.empty()); }
+
+  /// What of a tile may be seen in a part of it.
+  void keep(const Rectangle& r, const Held& held, Held* kept) {
+    kept->faces.clear();
+    kept->pieces.clear();
+    keep_seen(r, held.faces, &kept->faces);
+    if (pieces_ == nullptr) return;
+    ++tile_;
+    for (const std::uint32_t face : kept->faces) kept_in_[face] = tile_;
+    for (const std::uint32_t piece : held.pieces) {
+      const Rectangle& box = boxes_[piece];
+      const bool meets = box.x0 < r.x1 && box.x1 > r.x0 && box.y0 < r.y1 && box.y1 > r.y0;
+      if (meets && kept_in_[(*pieces_)[piece].face] == tile_) kept->pieces.push_back(piece);
+    }
   }
 
   enum Place { outside, meets, covers };
@@ -156,16 +191,25 @@ class Cutter {
   }
 
   const BeamFaces& beam_;
+  const std::vector<ClrayPiece>* pieces_;
   const std::function<bool(const TileFaces&)>& leaf_;
   std::vector<Edges> edges_;
+  std::vector<Rectangle> boxes_;         // of the pieces
+  std::vector<std::uint64_t> kept_in_;   // the last tile that kept a face
+  std::uint64_t tile_ = 0;
   std::vector<std::uint32_t> largest_first_;
-  std::deque<std::array<std::vector<std::uint32_t>, 4>> pools_;
+  std::deque<std::array<Held, 4>> pools_;
 };
 
 }  // namespace
 
 bool cut_tiles(const BeamFaces& beam, const std::function<bool(const TileFaces&)>& leaf) {
-  return beam.faces.empty() || Cutter(beam, leaf).run();
+  return beam.faces.empty() || Cutter(beam, nullptr, leaf).run();
+}
+
+bool cut_tiles(const BeamFaces& beam, const std::vector<ClrayPiece>& pieces,
+               const std::function<bool(const TileFaces&)>& leaf) {
+  return beam.faces.empty() || Cutter(beam, &pieces, leaf).run();
 }
 
 }  // namespace clray

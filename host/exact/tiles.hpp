@@ -12,14 +12,19 @@
 
 namespace clray {
 
-/// A tile with the faces that may be seen in it, numbers of BeamFaces::faces, the largest first.
+/// A tile with the faces that may be seen in it, numbers of BeamFaces::faces, the largest first; and the pieces of them
+/// that are looked for.
 struct TileFaces {
   double x0, x1, y0, y1;
   const std::vector<std::uint32_t>& faces;
+  const std::vector<std::uint32_t>& pieces;
 };
 
 /// Calls `leaf` with every tile of the beam that holds a face. Stops when it returns false; returns whether it never
 /// did.
 bool cut_tiles(const BeamFaces& beam, const std::function<bool(const TileFaces&)>& leaf);
+/// The same where only pieces of faces are looked for: with every tile that holds one.
+bool cut_tiles(const BeamFaces& beam, const std::vector<ClrayPiece>& pieces,
+               const std::function<bool(const TileFaces&)>& leaf);
 
 }  // namespace clray

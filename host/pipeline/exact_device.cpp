@@ -12,50 +12,58 @@
 namespace clray {
 namespace {
 
-constexpr std::size_t kGroup = 64;  // work-items
-
-/// The kernel, built and tested.
-cl::Kernel tested_kernel(OpenedDevice& opened, const ProgramOptions& options, const ExactNumbers& numbers) {
-  const std::string source = program_source(opened, "exact.cl", options);
-  cl::Kernel kernel =
-      make_kernel(opened, build_source(opened, "exact.cl", source, options.warnings_are_errors), "clray_exact");
-  run_exact_self_test(opened, source, kernel, numbers);
-  return kernel;
-}
+constexpr std::size_t kGroup = 64;       // work-items
+constexpr std::size_t kLitOfItem = 4;    // pieces that there is room for, on average: the host does the rest
 
 /// Work-groups of items in an order that spreads neighbours, which are of one tile and so of like cost: drivers give
 /// each core a run of work-groups. No result depends on it.
-std::vector<std::uint32_t> spread(const std::vector<std::uint32_t>& items) {
-  const std::size_t width = 2 * kGroup, groups = items.size() / width;
-  if (groups < 3) return items;
+void spread(ItemBatch* batch) {
+  const std::size_t groups = batch->size() / kGroup;
+  if (groups < 3) return;
   std::size_t stride = static_cast<std::size_t>(0.618 * static_cast<double>(groups)) | 1u;
   while (std::gcd(stride, groups) != 1) ++stride;
-  std::vector<std::uint32_t> out;
-  out.reserve(items.size());
-  for (std::size_t k = 0, g = 0; k < groups; ++k, g = (g + stride) % groups)
-    out.insert(out.end(), items.begin() + static_cast<std::ptrdiff_t>(g * width),
-               items.begin() + static_cast<std::ptrdiff_t>((g + 1) * width));
-  out.insert(out.end(), items.begin() + static_cast<std::ptrdiff_t>(groups * width), items.end());
-  return out;
+  const auto spread_out = [&](auto& of, std::size_t each) {
+    auto out = of;
+    const std::size_t width = kGroup * each;
+    for (std::size_t k = 0, g = 0; k < groups; ++k, g = (g + stride) % groups)
+      std::copy_n(of.begin() + static_cast<std::ptrdiff_t>(g * width), width,
+                  out.begin() + static_cast<std::ptrdiff_t>(k * width));
+    of = std::move(out);
+  };
+  spread_out(batch->items, 2);
+  if (!batch->pieces.empty()) spread_out(batch->pieces, 1);
 }
 
 }  // namespace
+
+ExactKernels exact_kernels(OpenedDevice& device, const cl::Program& program, const ExactNumbers& numbers) {
+  ExactKernels kernels;
+  kernels.faces = make_kernel(device, program, "clray_exact");
+  if (numbers.carry) kernels.pieces = make_kernel(device, program, "clray_exact_seen");
+  return kernels;
+}
 
 void ItemBatch::clear() {
   tiles.clear();
   lists.clear();
   items.clear();
+  pieces.clear();
 }
 
 ExactDevice::ExactDevice(OpenedDevice& device, const ProgramOptions& options, const ExactNumbers& numbers,
-                         const std::vector<ClrayBinning>& binnings, std::uint64_t bins)
-    : ExactDevice(device, tested_kernel(device, options, numbers), numbers, binnings, bins) {}
+                         std::uint64_t bins)
+    : opened_(device), numbers_(numbers), bin_count_(bins) {
+  const std::string source = program_source(opened_, "exact.cl", options);
+  kernels_ =
+      exact_kernels(opened_, build_source(opened_, "exact.cl", source, options.warnings_are_errors), numbers_);
+  run_exact_self_test(opened_, source, kernels_, numbers_);
+  bins_ = make_zero_buffer<i64>(opened_, bins);
+}
 
-ExactDevice::ExactDevice(OpenedDevice& device, const cl::Kernel& kernel, const ExactNumbers& numbers,
-                         const std::vector<ClrayBinning>& binnings, std::uint64_t bins)
-    : opened_(device), numbers_(numbers), binnings_(binnings), bin_count_(bins), kernel_(kernel) {
+ExactDevice::ExactDevice(OpenedDevice& device, const ExactKernels& kernels, const ExactNumbers& numbers,
+                         std::uint64_t bins)
+    : opened_(device), numbers_(numbers), bin_count_(bins), kernels_(kernels) {
   check_sums_size(opened_, bins);
-  binning_ = make_buffer(opened_, binnings);
   bins_ = make_zero_buffer<i64>(opened_, bins);
 }
 
@@ -65,6 +73,7 @@ void ExactDevice::begin_group(const FaceGroup& group) {
                     "the faces of a view", "faces");
   faces_ = make_buffer(opened_, group.faces);
   weights_ = make_buffer(opened_, group.weights);
+  binning_ = make_buffer(opened_, group.binnings);
   sums_ = make_zero_buffer<i64>(opened_, group.faces.size() * CLRAY_FACE_SUMS);
 }
 
@@ -73,43 +82,59 @@ void ExactDevice::launch_batch(ItemBatch* batch) {
   std::swap(batch_, *batch);
   batch->clear();
   if (batch_.size() == 0) return;
-  batch_.items = spread(batch_.items);
+  spread(&batch_);
+  const std::size_t room = numbers_.carry && !group_->carried ? kLitOfItem * batch_.size() : 0;
   tiles_ = make_buffer(opened_, batch_.tiles);
   lists_ = make_buffer(opened_, batch_.lists);
   items_ = make_buffer(opened_, batch_.items);
+  pieces_ = make_buffer(opened_, batch_.pieces);
   unfinished_ = make_zero_buffer<std::uint32_t>(opened_, 1 + 2 * batch_.size());
-  set_arguments(opened_, kernel_, faces_, weights_, tiles_, lists_, items_, binning_, sums_, bins_, unfinished_,
-                static_cast<cl_uint>(batch_.size()));
-  launch(opened_, kernel_, batch_.size(), kGroup);
+  lit_ = make_buffer<ClrayPiece>(opened_, room);
+  lit_count_ = make_buffer(opened_, std::vector<std::uint32_t>{0, static_cast<std::uint32_t>(room)}, CL_MEM_READ_WRITE);
+  cl::Kernel& kernel = group_->carried ? kernels_.pieces : kernels_.faces;
+  set_arguments(opened_, kernel, faces_, weights_, tiles_, lists_, items_, binning_, pieces_, sums_, bins_, unfinished_,
+                lit_, lit_count_, static_cast<cl_uint>(batch_.size()));
+  launch(opened_, kernel, batch_.size(), kGroup);
   with_cl_errors(opened_.info.name, [&] { opened_.queue.flush(); });
 }
 
 void ExactDevice::finish_batch() {
   if (batch_.size() == 0) return;
   const std::uint32_t count = read_buffer<std::uint32_t>(opened_, unfinished_, 1).front();
-  const auto left = read_buffer<std::uint32_t>(opened_, unfinished_, 2 * static_cast<std::size_t>(count), 1);
-  if (count > 0) {
-    host_sums_.resize(group_->faces.size() * CLRAY_FACE_SUMS);
-    host_bins_.resize(bin_count_);
-    ExactBuffers host;
-    host.faces = group_->faces.data();
-    host.weights = group_->weights.data();
-    host.tiles = batch_.tiles.data();
-    host.lists = batch_.lists.data();
-    host.items = batch_.items.data();
-    host.binnings = binnings_.data();
-    host.sums = host_sums_.data();
-    host.bins = host_bins_.data();
-    for (std::size_t k = 0; k < left.size(); k += 2) exact_item_on_host(host, numbers_, left[k], left[k + 1]);
+  finish_on_host(read_buffer<std::uint32_t>(opened_, unfinished_, 2 * static_cast<std::size_t>(count), 1));
+  if (numbers_.carry && !group_->carried) {
+    const auto lit = read_buffer<std::uint32_t>(opened_, lit_count_, 2);
+    const auto pieces = read_buffer<ClrayPiece>(opened_, lit_, std::min(lit[0], lit[1]));
+    found_lit_.insert(found_lit_.end(), pieces.begin(), pieces.end());
   }
   batch_.clear();
 }
 
-void ExactDevice::end_group(std::vector<i64>* sums) {
+void ExactDevice::finish_on_host(const std::vector<std::uint32_t>& unfinished) {
+  if (unfinished.empty()) return;
+  host_sums_.resize(group_->faces.size() * CLRAY_FACE_SUMS);
+  host_bins_.resize(bin_count_);
+  ExactBuffers host;
+  host.faces = group_->faces.data();
+  host.weights = group_->weights.data();
+  host.tiles = batch_.tiles.data();
+  host.lists = batch_.lists.data();
+  host.items = batch_.items.data();
+  host.binnings = group_->binnings.data();
+  host.pieces = batch_.pieces.data();
+  host.sums = host_sums_.data();
+  host.bins = host_bins_.data();
+  for (std::size_t k = 0; k < unfinished.size(); k += 2)
+    exact_item_on_host(host, numbers_, group_->carried, unfinished[k], unfinished[k + 1], &found_lit_);
+}
+
+void ExactDevice::end_group(std::vector<i64>* sums, std::vector<ClrayPiece>* lit) {
   finish_batch();
   const auto found = read_buffer<i64>(opened_, sums_, group_->faces.size() * CLRAY_FACE_SUMS);
   for (std::size_t k = 0; k < found.size(); ++k) (*sums)[k] += found[k];
   for (std::size_t k = 0; k < host_sums_.size(); ++k) (*sums)[k] += host_sums_[k];
+  lit->insert(lit->end(), found_lit_.begin(), found_lit_.end());
+  found_lit_.clear();
   host_sums_.clear();
   group_ = nullptr;
 }

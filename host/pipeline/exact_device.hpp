@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The kernel of exact passes on one device: faces of a group of views stay there while batches of items are launched,
-// and their sums are read back. What a device leaves unfinished, the host does.
+// The kernels of exact passes on one device: faces of a group of views stay there while batches of items are launched;
+// their sums, and the lit pieces that observers elsewhere look for, are read back. What a device leaves unfinished, the
+// host does.
 #pragma once
 
 #include <cstdint>
@@ -12,54 +13,62 @@
 
 namespace clray {
 
-/// Faces of some views, with the weights of their lanes.
+/// Faces of some views, as they are seen from the source or by an observer elsewhere.
 struct FaceGroup {
   std::vector<ClrayFace> faces;
-  std::vector<double> weights;
+  std::vector<double> weights;          ///< of their lanes
+  std::vector<ClrayBinning> binnings;  ///< the windows of the delay detectors
+  bool carried = false;                 ///< lit pieces are looked for, not faces
 };
 
-/// Tiles of such a group, and items: pairs of a tile and a face.
+/// Tiles of such a group, and items: pairs of a tile and a face, each with its piece where pieces are looked for.
 struct ItemBatch {
   std::vector<ClrayTile> tiles;
   std::vector<ClrayListed> lists;
   std::vector<std::uint32_t> items;
+  std::vector<ClrayPiece> pieces;
 
   std::size_t size() const { return items.size() / 2; }
   void clear();
 };
 
+/// The kernels of a program.
+struct ExactKernels {
+  cl::Kernel faces, pieces;  ///< null: the second, where nothing is carried
+};
+ExactKernels exact_kernels(OpenedDevice& device, const cl::Program& program, const ExactNumbers& numbers);
+
 class ExactDevice {
  public:
   /// Builds the program, or takes what was built before, and tests it once per device. `bins`: numbers of all
   /// histograms. Throws Error(device).
-  ExactDevice(OpenedDevice& device, const ProgramOptions& options, const ExactNumbers& numbers,
-              const std::vector<ClrayBinning>& binnings, std::uint64_t bins);
+  ExactDevice(OpenedDevice& device, const ProgramOptions& options, const ExactNumbers& numbers, std::uint64_t bins);
 
-  /// The same with a kernel that was built before, which is not tested.
-  ExactDevice(OpenedDevice& device, const cl::Kernel& kernel, const ExactNumbers& numbers,
-              const std::vector<ClrayBinning>& binnings, std::uint64_t bins);
+  /// The same with kernels that were built before, which are not tested.
+  ExactDevice(OpenedDevice& device, const ExactKernels& kernels, const ExactNumbers& numbers, std::uint64_t bins);
 
   /// The faces that the next batches are of. `group` must stay until end_group().
   void begin_group(const FaceGroup& group);
   /// Launches a batch; waits for the one before. Takes what `batch` holds and leaves it empty.
   void launch_batch(ItemBatch* batch);
-  /// Waits for the last batch and adds the sums of the group's faces to *sums.
-  void end_group(std::vector<i64>* sums);
+  /// Waits for the last batch, adds the sums of the group's faces to *sums and appends its lit pieces to *lit.
+  void end_group(std::vector<i64>* sums, std::vector<ClrayPiece>* lit);
   /// Adds all bins to *bins.
   void read_bins(std::vector<i64>* bins);
 
  private:
   void finish_batch();
+  void finish_on_host(const std::vector<std::uint32_t>& unfinished);
 
   OpenedDevice& opened_;
   ExactNumbers numbers_;
-  const std::vector<ClrayBinning>& binnings_;
   std::uint64_t bin_count_;
-  cl::Kernel kernel_;
-  cl::Buffer faces_, weights_, binning_, sums_, bins_, tiles_, lists_, items_, unfinished_;
+  ExactKernels kernels_;
+  cl::Buffer faces_, weights_, binning_, sums_, bins_, tiles_, lists_, items_, pieces_, unfinished_, lit_, lit_count_;
   const FaceGroup* group_ = nullptr;
   ItemBatch batch_;  // that runs
   std::vector<i64> host_sums_, host_bins_;
+  std::vector<ClrayPiece> found_lit_;
 };
 
 }  // namespace clray

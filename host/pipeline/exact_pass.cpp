@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "body/portable_tables.hpp"
+#include "exact/carry.hpp"
 #include "exact/tiles.hpp"
 #include "pipeline/clock.hpp"
 #include "pipeline/detector/room.hpp"
@@ -19,19 +20,19 @@ namespace {
 constexpr std::size_t kGroupFaces = 1u << 16;  // of a group of views, unless one view has more
 constexpr std::size_t kBatchItems = 1u << 15;  // of a launch: an interrupt waits for one
 
-/// The windows of the delay detectors among the histograms of a pass, and the numbers that all of them have.
-std::vector<ClrayBinning> binnings_of(const PassPlan& plan, std::uint64_t* numbers) {
-  std::vector<ClrayBinning> binnings;
-  *numbers = 0;
-  for (const PassDetector& d : plan.detectors) {
-    const auto window = room_of(d).binning;
-    if (window == nullptr) continue;
-    ClrayBinning b = window(d);
-    b.offset = *numbers;
-    *numbers += plan.beams.views.size() * plan.request.lanes.size() * (b.bins + 2);
-    binnings.push_back(b);
+/// A direction from which a body is seen: that of the source, first, or of an observer elsewhere.
+struct Sight {
+  std::vector<std::size_t> connections;  // of the pass: observers there
+  std::vector<ClrayBinning> binnings;    // the windows of its delay detectors
+
+  std::size_t connection() const { return connections.front(); }
+};
+
+bool at_source(const PassPlan& plan, std::size_t connection) {
+  for (std::size_t v = 0; v < plan.beams.views.size(); ++v) {
+    if (plan.beams.connections[v * plan.traits.connections + connection].shadow != 0) return false;
   }
-  return binnings;
+  return true;
 }
 
 bool wants_all_faces(const PassPlan& plan) {
@@ -39,20 +40,53 @@ bool wants_all_faces(const PassPlan& plan) {
                      [](const PassDetector& d) { return table("detector")[static_cast<std::size_t>(d.row)].scatters; });
 }
 
-/// Some views while they are solved.
+std::vector<Sight> sights_of(const PassPlan& plan) {
+  std::vector<Sight> sights(1);
+  for (std::size_t c = 0; c < plan.traits.connections && plan.traits.connect; ++c) {
+    if (at_source(plan, c)) {
+      sights.front().connections.push_back(c);
+    } else {
+      sights.push_back({{c}, {}});
+    }
+  }
+  return sights;
+}
+
+/// Lays the histograms of every sight out, one after the other; returns how many numbers they have.
+std::uint64_t lay_out_bins(const PassPlan& plan, std::vector<Sight>* sights) {
+  std::uint64_t numbers = 0;
+  for (Sight& sight : *sights) {
+    for (const PassDetector& d : plan.detectors) {
+      const auto window = room_of(d).binning;
+      if (window == nullptr) continue;
+      ClrayBinning b = window(d, sight.connections.empty() ? 0 : sight.connection());
+      b.offset = numbers;
+      if (!sight.connections.empty()) numbers += plan.beams.views.size() * plan.request.lanes.size() * (b.bins + 2);
+      sight.binnings.push_back(b);
+    }
+  }
+  return numbers;
+}
+
+/// Some views from one sight while they are solved.
 struct Group {
   std::size_t first_view = 0;
   std::vector<BeamFaces> beams;
   std::vector<std::size_t> offsets;  // of each beam's faces
   FaceGroup on_device;
+  std::vector<VisibleFace> visible;            // in the end, of all beams
+  std::vector<std::vector<ClrayPiece>> lit;  // of each beam, in the end: what other sights look for
+
+  std::size_t end_view() const { return first_view + beams.size(); }
 };
 
 class Solver {
  public:
-  Solver(const PassPlan& plan, const Geometry& geometry, std::vector<std::unique_ptr<ExactDevice>>& devices,
-         const std::function<bool(double)>& keep_going, Sums* sums)
+  Solver(const PassPlan& plan, const Geometry& geometry, const std::vector<Sight>& sights,
+         std::vector<std::unique_ptr<ExactDevice>>& devices, const std::function<bool(double)>& keep_going, Sums* sums)
       : plan_(plan),
         geometry_(geometry),
+        sights_(sights),
         devices_(devices),
         keep_going_(keep_going),
         sums_(*sums),
@@ -61,74 +95,194 @@ class Solver {
   bool run() {
     const std::size_t views = plan_.beams.views.size();
     for (std::size_t v = 0; v < views;) {
-      Group group;
-      group.first_view = v;
+      Group lit = empty_group(sights_.front(), v);
       do {
-        add_view(v++, &group);
-      } while (v < views && group.on_device.faces.size() + group.beams.back().faces.size() <= kGroupFaces);
-      if (!solve(group)) return false;
+        add_view(sights_.front(), v++, &lit);
+      } while (v < views && lit.on_device.faces.size() + lit.beams.back().faces.size() <= kGroupFaces);
+      if (!solve_lit(&lit)) return false;
+      for (std::size_t s = 1; s < sights_.size(); ++s) {
+        if (!solve_seen(sights_[s], lit)) return false;
+      }
     }
     return true;
   }
 
  private:
-  void add_view(std::size_t v, Group* group) const {
+  static Group empty_group(const Sight& sight, std::size_t first_view) {
+    Group group;
+    group.first_view = first_view;
+    group.on_device.binnings = sight.binnings;
+    return group;
+  }
+
+  bool is_source(const Sight& sight) const { return &sight == &sights_.front(); }
+
+  vec3 direction_of(const Sight& sight, std::size_t v) const {
+    if (is_source(sight)) return v3_load(plan_.beams.views[v].toward);
+    return v3_load(plan_.beams.connections[v * plan_.traits.connections + sight.connection()].direction);
+  }
+
+  void add_view(const Sight& sight, std::size_t v, Group* group) const {
     const ClrayView& view = plan_.beams.views[v];
-    group->beams.push_back(beam_faces(geometry_, plan_.materials, plan_.motions[v], v3_load(view.toward),
-                                      v3_load(plan_.constants.reference), static_cast<std::uint32_t>(v)));
+    const vec3 source = v3_load(view.toward);
+    group->beams.push_back(beam_faces(
+        geometry_, plan_.materials, plan_.motions[v],
+        {direction_of(sight, v), source, v3_load(plan_.constants.reference), static_cast<std::uint32_t>(v)}));
     const BeamFaces& beam = group->beams.back();
     group->offsets.push_back(group->on_device.faces.size());
     const std::size_t lanes = plan_.request.lanes.size();
+    const bool seen = !sight.connections.empty();
     for (std::size_t k = 0; k < beam.faces.size(); ++k) {
       ClrayFace face = beam.faces[k];
       face.bin_scale = view.weight_scale / plan_.beams.area_m2[v];
+      face.carried = is_source(sight) && wanted_elsewhere(beam, k, v) ? 1u : 0u;
       group->on_device.faces.push_back(face);
-      for (std::size_t l = 0; l < lanes; ++l) group->on_device.weights.push_back(weight(beam, k, l));
+      for (std::size_t l = 0; l < lanes; ++l)
+        group->on_device.weights.push_back(seen ? weight(beam, k, l, source, beam.toward) : 0.0);
     }
   }
 
-  /// f·mu_o of a face in a lane.
-  double weight(const BeamFaces& beam, std::size_t face, std::size_t lane) const {
+  /// Radiant intensity over irradiance of a face in a lane, per area across its beam: f·mu_i of a beam toward the
+  /// observer, and in that of the source f·mu_o, which is the same where both are one.
+  double weight(const BeamFaces& beam, std::size_t face, std::size_t lane, const vec3& source, const vec3& to) const {
     const FaceOrigin& origin = beam.origins[face];
-    if (!origin.lit || !plan_.traits.connect) return 0.0;
-    return surface_weight(plan_.materials.of(lane, origin.material), plan_.materials.tables,
-                          v3_load(beam.faces[face].normal), beam.toward, beam.toward);
+    const vec3 n = v3_load(beam.faces[face].normal);
+    const double mu_i = v3_dot(n, source), mu_o = v3_dot(n, to);
+    if (!origin.lit || !plan_.traits.connect || !(mu_i > 0.0) || !(mu_o > 0.0)) return 0.0;
+    const double f_mu_o =
+        surface_weight(plan_.materials.of(lane, origin.material), plan_.materials.tables, n, source, to);
+    const bool monostatic = mu_i == mu_o;
+    return monostatic ? f_mu_o : f_mu_o * (mu_i / mu_o);
   }
 
-  bool solve(const Group& group) {
-    for (auto& device : devices_) device->begin_group(group.on_device);
-    ItemBatch batch;
-    bool go = true;
-    for (std::size_t k = 0; k < group.beams.size() && go; ++k) {
-      const BeamFaces& beam = group.beams[k];
-      go = cut_tiles(beam, [&](const TileFaces& tile) {
-        add_items(group, k, tile, &batch);
-        return batch.size() < kBatchItems || launch(&batch, group.first_view + k);
-      });
+  /// Whether an observer elsewhere may see a lit face.
+  bool wanted_elsewhere(const BeamFaces& beam, std::size_t face, std::size_t v) const {
+    for (std::size_t s = 1; s < sights_.size(); ++s) {
+      const vec3 to = direction_of(sights_[s], v);
+      for (std::size_t l = 0; l < plan_.request.lanes.size(); ++l) {
+        if (weight(beam, face, l, beam.toward, to) != 0.0) return true;
+      }
     }
-    go = go && launch(&batch, group.first_view + group.beams.size());
-    std::vector<i64> found(group.on_device.faces.size() * CLRAY_FACE_SUMS);
-    for (auto& device : devices_) device->end_group(&found);
-    if (go) take(group, found);
+    return false;
+  }
+
+  bool solve_lit(Group* group) {
+    const bool go = solve(group, [&](std::size_t k, ItemBatch* batch) {
+      return cut_tiles(group->beams[k], [&](const TileFaces& tile) {
+        const std::uint32_t number = add_tile(*group, k, tile, batch);
+        for (const std::uint32_t face : tile.faces) {
+          if (wanted(*group, group->offsets[k] + face)) add_item(number, group->offsets[k] + face, batch);
+        }
+        return full(batch, *group, k);
+      });
+    });
+    if (go) take(sights_.front(), *group);
     return go;
   }
 
-  void add_items(const Group& group, std::size_t k, const TileFaces& tile, ItemBatch* batch) const {
+  /// What of the lit pieces an observer elsewhere sees.
+  bool solve_seen(const Sight& sight, const Group& lit) {
+    Group group = empty_group(sight, lit.first_view);
+    group.on_device.carried = true;
+    std::vector<Carrier> carriers;
+    for (std::size_t v = lit.first_view; v < lit.end_view(); ++v) add_view(sight, v, &group);
+    for (std::size_t k = 0; k < group.beams.size(); ++k) carriers.emplace_back(lit.beams[k], group.beams[k]);
+    const bool go = solve(&group, [&](std::size_t k, ItemBatch* batch) {
+      const std::vector<ClrayPiece> pieces = seen_pieces(carriers[k], lit.lit[k], group, k);
+      return cut_tiles(group.beams[k], pieces, [&](const TileFaces& tile) {
+        const std::uint32_t number = add_tile(group, k, tile, batch);
+        for (const std::uint32_t piece : tile.pieces) {
+          add_item(number, group.offsets[k] + pieces[piece].face, batch);
+          batch->pieces.push_back(pieces[piece]);
+        }
+        return full(batch, group, k);
+      });
+    });
+    if (!go) return false;
+    for (std::size_t k = 0; k < group.beams.size(); ++k) carry_rounding(carriers[k], lit, k, &group);
+    take(sight, group);
+    return true;
+  }
+
+  std::vector<ClrayPiece> seen_pieces(const Carrier& carrier, const std::vector<ClrayPiece>& lit, const Group& group,
+                                      std::size_t k) const {
+    std::vector<ClrayPiece> pieces;
+    pieces.reserve(lit.size());
+    for (const ClrayPiece& piece : lit) {
+      const std::int64_t there = carrier.seen(piece.face);
+      if (there >= 0 && shines(group, group.offsets[k] + static_cast<std::size_t>(there)))
+        pieces.push_back(carrier.carry(piece));
+    }
+    return pieces;
+  }
+
+  /// What rounding did to the lit part of a face it did to what is seen of it.
+  static void carry_rounding(const Carrier& carrier, const Group& lit, std::size_t k, Group* group) {
+    for (std::size_t f = 0; f < lit.beams[k].faces.size(); ++f) {
+      const std::int64_t there = carrier.seen(static_cast<std::uint32_t>(f));
+      if (there < 0) continue;
+      const auto seen = static_cast<std::size_t>(there);
+      const double ratio = group->beams[k].origins[seen].mu / lit.beams[k].origins[f].mu;
+      group->visible[group->offsets[k] + seen].rounding_m2 += ratio * lit.visible[lit.offsets[k] + f].rounding_m2;
+    }
+  }
+
+  /// `add_items` gives the items of beam k of the group.
+  template <class AddItems>
+  bool solve(Group* group, const AddItems& add_items) {
+    for (auto& device : devices_) device->begin_group(group->on_device);
+    ItemBatch batch;
+    bool go = true;
+    for (std::size_t k = 0; k < group->beams.size() && go; ++k) go = add_items(k, &batch);
+    go = go && launch(&batch, group->end_view());
+    std::vector<i64> found(group->on_device.faces.size() * CLRAY_FACE_SUMS);
+    std::vector<ClrayPiece> lit;
+    for (auto& device : devices_) device->end_group(&found, &lit);
+    group->visible.reserve(group->on_device.faces.size());
+    for (std::size_t f = 0; f < group->on_device.faces.size(); ++f)
+      group->visible.push_back(visible_face(group->on_device.faces[f], found.data() + f * CLRAY_FACE_SUMS));
+    group->lit.resize(group->beams.size());
+    for (ClrayPiece& piece : lit) {
+      if (piece.corners == 0) continue;
+      const auto next = std::upper_bound(group->offsets.begin(), group->offsets.end(), piece.face);
+      const auto k = static_cast<std::size_t>(next - group->offsets.begin()) - 1;
+      piece.face -= static_cast<std::uint32_t>(group->offsets[k]);
+      group->lit[k].push_back(piece);
+    }
+    return go;
+  }
+
+  /// Whether a face sends light to an observer at the beam's end.
+  bool shines(const Group& group, std::size_t face) const {
+    const std::size_t lanes = plan_.request.lanes.size();
+    const double* weights = group.on_device.weights.data() + face * lanes;
+    return std::any_of(weights, weights + lanes, [](double w) { return w != 0.0; });
+  }
+  bool wanted(const Group& group, std::size_t face) const {
+    return all_faces_ || group.on_device.faces[face].carried != 0 || shines(group, face);
+  }
+
+  static std::uint32_t add_tile(const Group& group, std::size_t k, const TileFaces& tile, ItemBatch* batch) {
     const BeamFaces& beam = group.beams[k];
     const auto offset = static_cast<std::uint32_t>(group.offsets[k]);
-    const std::size_t lanes = plan_.request.lanes.size();
-    const auto number = static_cast<std::uint32_t>(batch->tiles.size());
     batch->tiles.push_back({tile.x0, tile.x1, tile.y0, tile.y1, beam.size, beam.margin,
                             static_cast<std::uint32_t>(batch->lists.size()),
                             static_cast<std::uint32_t>(tile.faces.size())});
     for (const std::uint32_t face : tile.faces) {
       const ClrayFace& f = beam.faces[face];
       batch->lists.push_back({{f.box[0], f.box[1], f.box[2], f.box[3]}, f.nearest, offset + face, 0});
-      const double* weights = group.on_device.weights.data() + (offset + face) * lanes;
-      if (!all_faces_ && std::all_of(weights, weights + lanes, [](double w) { return w == 0.0; })) continue;
-      batch->items.push_back(number);
-      batch->items.push_back(offset + face);
     }
+    return static_cast<std::uint32_t>(batch->tiles.size() - 1);
+  }
+
+  static void add_item(std::uint32_t tile, std::size_t face, ItemBatch* batch) {
+    batch->items.push_back(tile);
+    batch->items.push_back(static_cast<std::uint32_t>(face));
+  }
+
+  /// Launches a batch that is full; false where the pass must stop.
+  bool full(ItemBatch* batch, const Group& group, std::size_t k) {
+    return batch->size() < kBatchItems || launch(batch, group.first_view + k);
   }
 
   bool launch(ItemBatch* batch, std::size_t views_done) {
@@ -137,39 +291,40 @@ class Solver {
     return keep_going_(static_cast<double>(views_done) / static_cast<double>(plan_.beams.views.size()));
   }
 
-  void take(const Group& group, const std::vector<i64>& found) {
+  void take(const Sight& sight, const Group& group) {
     for (std::size_t k = 0; k < group.beams.size(); ++k) {
       const BeamFaces& beam = group.beams[k];
-      std::vector<VisibleFace> visible(beam.faces.size());
-      for (std::size_t f = 0; f < visible.size(); ++f)
-        visible[f] = visible_face(beam.faces[f], found.data() + (group.offsets[k] + f) * CLRAY_FACE_SUMS);
       const double* weights = group.on_device.weights.data() + group.offsets[k] * plan_.request.lanes.size();
-      const SolvedView solved{group.first_view + k, beam, visible, weights};
+      const SolvedView solved{group.first_view + k, is_source(sight), sight.connections,
+                              beam,                 group.visible.data() + group.offsets[k], weights};
       for (const PassDetector& d : plan_.detectors) {
         const auto add = room_of(d).solved;
         if (add != nullptr) add({plan_, d, geometry_, solved}, &sums_);
       }
+      if (!is_source(sight)) continue;
       sums_.points[solved.view] = 1;
       const double unit = plan_.beams.area_m2[solved.view] / plan_.constants.unit_scale;
-      for (const VisibleFace& v : visible) sums_.area_rounding[solved.view] += v.rounding_m2 + unit;
+      for (std::size_t f = 0; f < beam.faces.size(); ++f)
+        sums_.area_rounding[solved.view] += solved.visible[f].rounding_m2 + unit;
     }
   }
 
   static VisibleFace visible_face(const ClrayFace& face, const i64* sum) {
-    const double area = 1.0 / face.area_scale, length = area / face.inv_length, depth = area / face.inv_depth;
+    const double area = 1.0 / face.area_scale, length = area / face.inv_length, path = area / face.inv_path;
     const auto number = [&](int k) { return static_cast<double>(sum[k]); };
     VisibleFace v;
     v.area_m2 = number(CLRAY_FACE_AREA) * area;
     v.x_m3 = number(CLRAY_FACE_X) * length;
     v.y_m3 = number(CLRAY_FACE_Y) * length;
-    v.depth_m3 = number(CLRAY_FACE_DEPTH) * depth;
-    v.depth2_m4 = number(CLRAY_FACE_DEPTH2) * depth / face.inv_depth;
+    v.path_m3 = number(CLRAY_FACE_PATH) * path;
+    v.path2_m4 = number(CLRAY_FACE_PATH2) * path / face.inv_path;
     v.rounding_m2 = (number(CLRAY_FACE_LOST) + number(CLRAY_FACE_PIECES)) * area;
     return v;
   }
 
   const PassPlan& plan_;
   const Geometry& geometry_;
+  const std::vector<Sight>& sights_;
   std::vector<std::unique_ptr<ExactDevice>>& devices_;
   const std::function<bool(double)>& keep_going_;
   Sums& sums_;
@@ -177,20 +332,21 @@ class Solver {
   std::size_t next_device_ = 0;
 };
 
-/// Gives each histogram's block its rows: of a view and lane, the same for every connection.
-void take_bins(const PassPlan& plan, const std::vector<ClrayBinning>& binnings, const std::vector<i64>& bins,
-               Sums* sums) {
+/// Gives each histogram's block its rows, of a view, lane and connection.
+void take_bins(const PassPlan& plan, const std::vector<Sight>& sights, const std::vector<i64>& bins, Sums* sums) {
   const SumShape& shape = plan.layout.shape;
-  std::size_t n = 0;
-  for (const PassDetector& d : plan.detectors) {
-    if (room_of(d).binning == nullptr) continue;
-    const ClrayBinning& b = binnings[n++];
-    const SumBlock& block = plan.layout.blocks[d.first_block];
-    for (std::uint64_t row = 0; row < shape.views * shape.lanes; ++row) {
-      for (std::uint64_t c = 0; c < shape.connections; ++c) {
-        for (std::uint64_t k = 0; k < block.width; ++k)
-          sums->values.set(block.offset + (row * shape.connections + c) * block.width + k,
-                           bins[b.offset + row * block.width + k]);
+  for (const Sight& sight : sights) {
+    std::size_t n = 0;
+    for (const PassDetector& d : plan.detectors) {
+      if (room_of(d).binning == nullptr) continue;
+      const ClrayBinning& b = sight.binnings[n++];
+      const SumBlock& block = plan.layout.blocks[d.first_block];
+      for (std::uint64_t row = 0; row < shape.views * shape.lanes; ++row) {
+        for (const std::size_t c : sight.connections) {
+          for (std::uint64_t k = 0; k < block.width; ++k)
+            sums->values.set(block.offset + (row * shape.connections + c) * block.width + k,
+                             bins[b.offset + row * block.width + k]);
+        }
       }
     }
   }
@@ -198,14 +354,21 @@ void take_bins(const PassPlan& plan, const std::vector<ClrayBinning>& binnings, 
 
 }  // namespace
 
+/// What the pass sees, and its devices.
+struct ExactPass::Parts {
+  std::vector<Sight> sights;
+  std::uint64_t bins = 0;  // numbers of all histograms
+  std::vector<std::unique_ptr<ExactDevice>> devices;
+};
+
 ExactPass::ExactPass(Device& device, const PassPlan& plan, const Geometry& geometry)
-    : plan_(plan), geometry_(geometry) {
+    : plan_(plan), geometry_(geometry), parts_(std::make_unique<Parts>()) {
   const double start = now();
-  binnings_ = binnings_of(plan, &bins_);
-  const ExactNumbers numbers{static_cast<std::uint32_t>(plan.request.lanes.size()),
-                             static_cast<std::uint32_t>(binnings_.size())};
+  parts_->sights = sights_of(plan);
+  parts_->bins = lay_out_bins(plan, &parts_->sights);
   for (OpenedDevice& opened : device.impl().devices)
-    devices_.push_back(std::make_unique<ExactDevice>(opened, plan.program.options, numbers, binnings_, bins_));
+    parts_->devices.push_back(
+        std::make_unique<ExactDevice>(opened, plan.program.options, exact_numbers(plan), parts_->bins));
   compile_seconds_ = now() - start;
 }
 
@@ -214,11 +377,21 @@ ExactPass::~ExactPass() = default;
 bool ExactPass::run(Sums* sums, const std::function<bool(double)>& keep_going) {
   *sums = Sums(plan_.layout);
   sums->area_rounding.assign(plan_.beams.views.size(), 0.0);
-  if (!Solver(plan_, geometry_, devices_, keep_going, sums).run()) return false;
-  std::vector<i64> bins(bins_);
-  for (auto& device : devices_) device->read_bins(&bins);
-  take_bins(plan_, binnings_, bins, sums);
+  if (!Solver(plan_, geometry_, parts_->sights, parts_->devices, keep_going, sums).run()) return false;
+  std::vector<i64> bins(parts_->bins);
+  for (auto& device : parts_->devices) device->read_bins(&bins);
+  take_bins(plan_, parts_->sights, bins, sums);
   return true;
+}
+
+ExactNumbers exact_numbers(const PassPlan& plan) {
+  ExactNumbers numbers;
+  numbers.lanes = static_cast<std::uint32_t>(plan.request.lanes.size());
+  for (const PassDetector& d : plan.detectors) numbers.binnings += room_of(d).binning != nullptr;
+  const std::vector<Sight> sights = sights_of(plan);
+  numbers.from_source = !sights.front().connections.empty();
+  numbers.carry = sights.size() > 1;
+  return numbers;
 }
 
 }  // namespace clray

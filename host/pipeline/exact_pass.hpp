@@ -6,14 +6,15 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <vector>
 
 #include "clray/device.hpp"
+#include "exact/portable_faces.hpp"
 #include "pipeline/plan.hpp"
 
 namespace clray {
 
-class ExactDevice;
+/// What the program of an exact pass is built with.
+ExactNumbers exact_numbers(const PassPlan& plan);
 
 /// One program and its buffers on every opened device.
 class ExactPass {
@@ -31,9 +32,8 @@ class ExactPass {
  private:
   const PassPlan& plan_;
   const Geometry& geometry_;
-  std::vector<ClrayBinning> binnings_;
-  std::uint64_t bins_ = 0;  // numbers of all histograms
-  std::vector<std::unique_ptr<ExactDevice>> devices_;
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
   double compile_seconds_ = 0.0;
 };
 

@@ -46,10 +46,6 @@ std::string obstacle_to(const Scene& scene, const TableRow& row) {
   if (row.connects) {
     if (const Material* m = misfit(scene, [](const TableRow& model) { return !model.delta; }))
       return fmt::format("material {} is a mirror", m->name);
-    for (const Observer& o : scene.observers) {
-      if (scene.trace.force_bistatic || !at_source(o, scene.source))
-        return fmt::format("observer {} is not at the source", o.name.empty() ? "of the scene" : o.name);
-    }
   }
   if (row.scatters) {
     // The momentum of the light that such surfaces send on is a closed form.

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "pipeline/detector/room.hpp"
+#include "pipeline/exact_pass.hpp"
 #include "pipeline/plan.hpp"
 #include "scene/tables.hpp"
 
@@ -33,13 +34,16 @@ class Specialiser {
  private:
   // An exact pass has a program of its own (exact.cl), which knows faces and no surfaces.
   Specialised exact() {
-    std::size_t binnings = 0;
-    for (const PassDetector& d : plan_.detectors) binnings += room_of(d).binning != nullptr;
+    const ExactNumbers numbers = exact_numbers(plan_);
     out_.entry = "exact.cl";
-    define("CLRAY_LANES", plan_.request.lanes.size());
-    define("CLRAY_BINNINGS", binnings);
+    define("CLRAY_LANES", numbers.lanes);
+    define("CLRAY_BINNINGS", numbers.binnings);
+    define("CLRAY_FROM_SOURCE", numbers.from_source ? 1 : 0);
+    define("CLRAY_CARRY", numbers.carry ? 1 : 0);
     define("CLRAY_EXACT_STACK", kWaiting);
     out_.kept.push_back("faces, tiles and their visible parts: visibility is solved");
+    if (numbers.carry) out_.kept.push_back("lit pieces carried to other views: an observer is not at the source");
+    if (!numbers.carry) out_.left_out.push_back("lit pieces carried to other views: what is lit is all that is seen");
     out_.left_out.push_back("rays, their random numbers and replicates: nothing is sampled");
     if (!geometry_.trees) out_.left_out.push_back("trees: no pass has rays");
     return std::move(out_);

@@ -51,23 +51,23 @@ CLRAY_FN f64 chain_place(const Chain* c, const f64* u, const f64* t, f64 at) {
   return fma(share, t[next] - t[c->at], t[c->at]);
 }
 
-/// Adds a piece of a face. `path` and `per_metre`: u at the face's first corner, and bins per metre of depth.
+/// Adds a piece of a face. `u_corner` and `per_metre`: u at the face's first corner, and bins per metre of path.
 static void histogram_piece(const Histogram* h, const __global ClrayFace* face, const Fragment* f, f64 area,
-                            f64 u_corner, f64 per_depth) {
-  const f64 u0 = fma(per_depth, face->depth[1], u_corner), u1 = fma(per_depth, face->depth[2], u_corner);
+                            f64 u_corner, f64 per_metre) {
+  const f64 u0 = fma(per_metre, face->path[1], u_corner), u1 = fma(per_metre, face->path[2], u_corner);
   const f64 low = f64_min(u_corner, f64_min(u0, u1)), high = f64_max(u_corner, f64_max(u0, u1));
   if (high - low < CLRAY_ONE_BIN) {
     histogram_add(h, bin_of(h, fma(0.5, high - low, low)), area);
     return;
   }
   // t: x or y, whichever changes less along the lines of equal u … their Jacobian is the slope of the other.
-  const f64 gx = per_depth * face->slope_x, gy = per_depth * face->slope_y;
+  const f64 gx = per_metre * face->path_x, gy = per_metre * face->path_y;
   const u32 along_x = fabs(gy) >= fabs(gx) ? 1u : 0u;
   const f64 jacobian = along_x ? fabs(gy) : fabs(gx);
   f64 u[CLRAY_FRAGMENT_CORNERS], t[CLRAY_FRAGMENT_CORNERS];
   Chain a = {0u, 0u, 1u, f->corners}, b = {0u, 0u, f->corners - 1u, f->corners};
   for (u32 i = 0; i < f->corners; ++i) {
-    u[i] = fma(per_depth, face_depth(face, f->x[i], f->y[i]), u_corner);
+    u[i] = fma(per_metre, face_path(face, f->x[i], f->y[i]), u_corner);
     t[i] = along_x ? f->x[i] : f->y[i];
     if (u[i] < u[a.at]) a.at = i;
     if (u[i] > u[a.to]) a.to = i;

@@ -5,8 +5,10 @@
 #define CLRAY_EXACT_BUFFERS_H
 
 // What a pass reads: faces of all views, the weights of each face's lanes, tiles, their lists of faces (the
-// largest first), items (a tile and a face each), and the windows of delay detectors. Then what it adds to:
-// sums of each face, bins, and items that are not finished: their number, then an item and its fragments each.
+// largest first), items (a tile and a face each), the windows of delay detectors, and where lit pieces are taken up
+// again one for each item. Then what it adds to: sums of each face, bins, items that are not finished (their number,
+// then an item and its fragments each), and lit pieces for observers elsewhere (their number and what there is room
+// for; more are not kept).
 #define CLRAY_EXACT_BUFFERS(X)                 \
   X(const CLRAY_GLOBAL ClrayFace, faces)       \
   X(const CLRAY_GLOBAL f64, weights)           \
@@ -14,8 +16,11 @@
   X(const CLRAY_GLOBAL ClrayListed, lists)     \
   X(const CLRAY_GLOBAL u32, items)             \
   X(const CLRAY_GLOBAL ClrayBinning, binnings) \
+  X(const CLRAY_GLOBAL ClrayPiece, pieces)     \
   X(volatile CLRAY_GLOBAL i64, sums)           \
   X(volatile CLRAY_GLOBAL i64, bins)           \
-  X(volatile CLRAY_GLOBAL u32, unfinished)
+  X(volatile CLRAY_GLOBAL u32, unfinished)     \
+  X(CLRAY_GLOBAL ClrayPiece, lit)              \
+  X(volatile CLRAY_GLOBAL u32, lit_count)
 
 #endif

@@ -29,21 +29,30 @@ typedef struct Waiting {
   u32 count, room;
 } Waiting;
 
-/// The part of a face inside a tile; 0 corners where there is none.
-CLRAY_FN u32 face_in_tile(const CLRAY_GLOBAL ClrayFace* face, const CLRAY_GLOBAL ClrayTile* tile, Fragment* f) {
-  Fragment other, rest;
+/// Cuts away what of a fragment is outside a tile. Returns 0 where it has too many corners.
+CLRAY_FN u32 fragment_in_tile(Fragment* f, const CLRAY_GLOBAL ClrayTile* tile) {
+  Fragment inside, rest;
   u32 room = 1u;
-  f->corners = 0u;
-  for (u32 i = 0; i < 3u; ++i) fragment_add(f, face->x[i], face->y[i]);
   const Line lines[4] = {
       line_between(tile->x0, tile->y0, tile->x1, tile->y0), line_between(tile->x1, tile->y0, tile->x1, tile->y1),
       line_between(tile->x1, tile->y1, tile->x0, tile->y1), line_between(tile->x0, tile->y1, tile->x0, tile->y0)};
-  fragment_close(f);
   for (u32 k = 0; k < 4u && f->corners >= 3u; ++k) {
-    room &= fragment_cut(f, lines[k], &other, &rest);
-    *f = other;
+    room &= fragment_cut(f, lines[k], &inside, &rest);
+    *f = inside;
   }
   return room;
+}
+
+CLRAY_FN void fragment_of_face(const CLRAY_GLOBAL ClrayFace* face, Fragment* f) {
+  f->corners = 0u;
+  for (u32 i = 0; i < 3u; ++i) fragment_add(f, face->x[i], face->y[i]);
+  fragment_close(f);
+}
+
+CLRAY_FN void fragment_of_piece(const CLRAY_GLOBAL ClrayPiece* piece, Fragment* f) {
+  f->corners = 0u;
+  for (u32 i = 0; i < piece->corners; ++i) fragment_add(f, piece->x[i], piece->y[i]);
+  fragment_close(f);
 }
 
 #define CLRAY_INSIDE 1u
@@ -240,20 +249,57 @@ static void add_to_bins(const Exact* g, u32 own, const Fragment* f, f64 area) {
     h.row = g->bins + b->offset + (u64)face->view * CLRAY_LANES * (b->bins + 2u);
     h.weight = g->weights + (u64)own * CLRAY_LANES;
     h.scale = face->bin_scale;
-    histogram_piece(&h, face, f, area, (face->path_m - b->first_m) * b->per_metre, -2.0 * b->per_metre);
+    histogram_piece(&h, face, f, area, (face->path_m - b->first_m) * b->per_metre, b->per_metre);
   }
 }
 
-/// One face in one tile. Its fragments are taken one after the other; those before the `skip`-th add nothing. Returns
-/// how many were done; *full is 1 where the stack had no more room for the next.
-static u32 exact_item(const Exact* g, u32 item, Fragment* stack, u32 room, u32 skip, u32* full) {
+/// Notes a lit piece for observers elsewhere, in two where it has many corners. Returns 0 where there is no room.
+static u32 carry_piece(const Exact* g, u32 own, const Fragment* f) {
+  Fragment part[2];
+  u32 count = 1u;
+  part[0] = *f;
+  if (f->corners > CLRAY_PIECE_CORNERS) {
+    halve(f, part, part + 1);
+    count = 2u;
+  }
+  const u32 room = g->lit_count[1], at = atomic_add(g->lit_count, count);
+  for (u32 k = 0; k < count && at + k < room; ++k) {
+    CLRAY_GLOBAL ClrayPiece* piece = g->lit + at + k;
+    piece->face = own;
+    piece->off = 0.0;
+    piece->corners = at + count <= room ? part[k].corners : 0u;  // of a piece in two there is room for all or none
+    for (u32 i = 0; i < CLRAY_PIECE_CORNERS; ++i) {
+      piece->x[i] = i < piece->corners ? part[k].x[i] : 0.0;
+      piece->y[i] = i < piece->corners ? part[k].y[i] : 0.0;
+    }
+  }
+  return at + count <= room ? 1u : 0u;
+}
+
+/// Notes what is visible of a fragment. Returns 0 where there is no room for it.
+static u32 take_piece(const Exact* g, u32 own, u32 carried, const Fragment* f, Kept* kept) {
+  const __global ClrayFace* face = g->faces + own;
+  if (CLRAY_CARRY && !carried && face->carried && !carry_piece(g, own, f)) return 0u;
+  const f64 area = 0.5 * fragment_area2(f);
+  keep_piece(face, f, area, kept);
+  if (carried || CLRAY_FROM_SOURCE) add_to_bins(g, own, f, area);
+  return 1u;
+}
+
+/// One face in one tile, or (carried) one lit piece of it in a tile of an observer's view. Its fragments are taken one
+/// after the other; those before the `skip`-th add nothing. Returns how many were done; *full is 1 where the stack had
+/// no more room for the next, or the lit pieces had none.
+static u32 exact_item(const Exact* g, u32 item, u32 carried, Fragment* stack, u32 room, u32 skip, u32* full) {
   const __global ClrayTile* tile = g->tiles + g->items[2u * item];
   const u32 own = g->items[2u * item + 1u];
   const __global ClrayFace* face = g->faces + own;
   Waiting waiting = {stack, 0u, room};
   Kept kept;
   for (u32 k = 0; k < CLRAY_FACE_SUMS; ++k) kept.sum[k] = 0;
-  *full = face_in_tile(face, tile, stack) ? 0u : 1u;
+  if (CLRAY_CARRY && carried) fragment_of_piece(g->pieces + item, stack);
+  if (!(CLRAY_CARRY && carried)) fragment_of_face(face, stack);
+  const f64 off = fma(CLRAY_ROUNDING, tile->size, CLRAY_CARRY && carried ? g->pieces[item].off : 0.0);
+  *full = fragment_in_tile(stack, tile) ? 0u : 1u;
   stack[0].next = 0u;
   if (stack[0].corners >= 3u) waiting.count = 1u;
   const f64 whole2 = waiting.count == 1u ? fragment_area2(stack) : 0.0;
@@ -263,14 +309,11 @@ static u32 exact_item(const Exact* g, u32 item, Fragment* stack, u32 room, u32 s
     f64 lost = 0.0;
     const u32 end = cut_all(g, tile, own, CLRAY_SLIVER * whole2, &f, &waiting, &lost);
     if (end == CLRAY_PIECE_FULL) *full = 1u;
-    if (end == CLRAY_PIECE_FULL || done++ < skip) continue;
-    if (end == CLRAY_PIECE_VISIBLE) {
-      const f64 area = 0.5 * fragment_area2(&f);
-      lost = fma(CLRAY_ROUNDING * tile->size, extent_size(fragment_extent(&f)), lost);
-      keep_piece(face, &f, area, &kept);
-      add_to_bins(g, own, &f, area);
+    if (end == CLRAY_PIECE_VISIBLE && done >= skip) {
+      if (!take_piece(g, own, carried, &f, &kept)) *full = 1u;
+      lost = fma(off, extent_size(fragment_extent(&f)), lost);
     }
-    kept.sum[CLRAY_FACE_LOST] += convert_long_rte(lost * face->area_scale);
+    if (!*full && done++ >= skip) kept.sum[CLRAY_FACE_LOST] += convert_long_rte(lost * face->area_scale);
   }
   for (u32 k = 0; k < CLRAY_FACE_SUMS; ++k) {
     if (kept.sum[k] != 0) atomic_add_i64(g->sums + (u64)own * CLRAY_FACE_SUMS + k, kept.sum[k]);

@@ -155,7 +155,8 @@ typedef struct ClrayPass {
 /// toward the source, m.
 typedef struct ClrayFace {
   f64 x[3], y[3];        // corners, counter-clockwise
-  f64 depth[3];          // of the corners, from that of the first
+  f64 path[3];           // path length by way of the corners, from that of the first
+  f64 path_x, path_y;    // its slope over the face
   f64 depth0;            // of the first corner
   f64 slope_x, slope_y;  // of depth over the face
   f64 body[9];           // the corners in the body frame, from the body's centre
@@ -164,21 +165,23 @@ typedef struct ClrayFace {
   f64 box[4];            // least and greatest x, least and greatest y
   f64 nearest;           // greatest depth
   f64 margin;            // of depth: what is nearer than the face's own depth less this may hide it
-  // Powers of two: integers per m² of the sums, and what brings x, y (from the first corner) and depth below 1.
-  f64 area_scale, inv_length, inv_depth;
+  // Powers of two: integers per m² of the sums, and what brings x, y and path (from the first corner) below 1.
+  f64 area_scale, inv_length, inv_path;
   f64 path_m;     // path length by way of the first corner, relative to the reference point
   f64 bin_scale;  // integers per m² of weight 1 in the bins of its view
   u32 view;
-  u32 order;  // of faces in one place the first hides the others
+  u32 order;    // of faces in one place the first hides the others
+  u32 carried;  // 1: its lit pieces are wanted by observers elsewhere
+  u32 padding;
 } ClrayFace;
 
-// Sums of a face, as integers: area, first moments about its first corner, moments of depth from that corner, a bound
-// of the area that rounding may have moved, and the number of visible pieces.
+// Sums of a face, as integers: area, first moments about its first corner, moments of path length from that corner, a
+// bound of the area that rounding may have moved, and the number of visible pieces.
 #define CLRAY_FACE_AREA 0
 #define CLRAY_FACE_X 1
 #define CLRAY_FACE_Y 2
-#define CLRAY_FACE_DEPTH 3
-#define CLRAY_FACE_DEPTH2 4
+#define CLRAY_FACE_PATH 3
+#define CLRAY_FACE_PATH2 4
 #define CLRAY_FACE_LOST 5
 #define CLRAY_FACE_PIECES 6
 #define CLRAY_FACE_SUMS 7
@@ -199,6 +202,15 @@ typedef struct ClrayTile {
   u32 first, count;
 } ClrayTile;
 
+#define CLRAY_PIECE_CORNERS 7
+
+/// A lit piece of a face, across the beam of a view.
+typedef struct ClrayPiece {
+  f64 x[CLRAY_PIECE_CORNERS], y[CLRAY_PIECE_CORNERS];
+  f64 off;  // what its corners may be off, m
+  u32 face, corners;
+} ClrayPiece;
+
 /// The window of a delay detector: `bins` bins from the path length first_m on. Its rows of bins begin at `offset`.
 typedef struct ClrayBinning {
   f64 first_m, per_metre;
@@ -218,9 +230,10 @@ typedef struct ClrayBinning {
   X(ClrayBlock, 16)      \
   X(ClrayDetector, 8)    \
   X(ClrayPass, 80)       \
-  X(ClrayFace, 296)      \
+  X(ClrayFace, 320)      \
   X(ClrayListed, 48)     \
   X(ClrayTile, 56)       \
+  X(ClrayPiece, 128)     \
   X(ClrayBinning, 32)
 #ifdef __cplusplus
 #define CLRAY_ASSERT_SIZE(type, size) static_assert(sizeof(type) == size, "abi.h: " #type);

@@ -42,12 +42,13 @@ EnergyBooks books_of(const RoomResults& x, const LaneRecord& record) {
 
 /// What a view's faces receive, absorb and send on. Where the last goes is not followed: it is all in `reflected`.
 void books_solved(const SolvedContext& x, Sums* sums) {
+  if (!x.solved.from_source) return;
   const SumShape& shape = x.plan.layout.shape;
   const SumBlock& block = x.plan.layout.blocks[x.detector.first_block];
   const double scale = x.plan.constants.unit_scale / x.plan.beams.area_m2[x.solved.view];
   for (std::size_t l = 0; l < shape.lanes; ++l) {
     const std::uint64_t row = block.offset + (x.solved.view * shape.lanes + l) * block.width;
-    for (std::size_t f = 0; f < x.solved.visible.size(); ++f) {
+    for (std::size_t f = 0; f < x.solved.beam.faces.size(); ++f) {
       const FaceOrigin& origin = x.solved.beam.origins[f];
       const ClrayMaterial& m = x.plan.materials.of(l, origin.material);
       const Sum received = std::llrint(x.solved.visible[f].area_m2 * scale);

@@ -179,9 +179,9 @@ void delay_results(const RoomResults& x) {
   }
 }
 
-/// The window of an exact pass. All its observers are at the source, so they share one.
-ClrayBinning delay_binning(const PassDetector& detector) {
-  return {detector.settings[kSettingFirst], detector.settings[kSettingPerMetre], 0,
+ClrayBinning delay_binning(const PassDetector& detector, std::size_t connection) {
+  const double* settings = detector.settings.data() + kSettingStride * connection;
+  return {settings[kSettingFirst], settings[kSettingPerMetre], 0,
           static_cast<std::uint64_t>(detector.settings[kSettingBins])};
 }
 
@@ -195,21 +195,21 @@ void intensity_solved(const SolvedContext& x, Sums* sums) {
   for (std::size_t l = 0; l < shape.lanes; ++l) {
     Sum moments[3] = {};
     double rounding = 0.0;
-    for (std::size_t f = 0; f < x.solved.visible.size(); ++f) {
+    for (std::size_t f = 0; f < x.solved.beam.faces.size(); ++f) {
       const double w = x.solved.weights[f * shape.lanes + l];
       if (w == 0.0) continue;
       const VisibleFace& v = x.solved.visible[f];
-      // tau = from + slope·depth
+      // tau = from + slope·path
       const double from = (x.solved.beam.faces[f].path_m - view.path_middle_m) * view.inv_path_per_m;
-      const double slope = -2.0 * view.inv_path_per_m;
-      const double first = std::fma(from, v.area_m2, slope * v.depth_m3);
+      const double slope = view.inv_path_per_m;
+      const double first = std::fma(from, v.area_m2, slope * v.path_m3);
       const double second =
-          std::fma(from, std::fma(from, v.area_m2, 2.0 * slope * v.depth_m3), slope * slope * v.depth2_m4);
+          std::fma(from, std::fma(from, v.area_m2, 2.0 * slope * v.path_m3), slope * slope * v.path2_m4);
       const double values[3] = {v.area_m2, first, second};
       for (int k = 0; k < 3; ++k) moments[k] += std::llrint(w * values[k] * scale);
       rounding += w * v.rounding_m2 + 1.0 / scale;
     }
-    for (std::size_t c = 0; c < shape.connections; ++c) {
+    for (const std::size_t c : x.solved.connections) {
       const std::size_t row = (x.solved.view * shape.lanes + l) * shape.connections + c;
       for (std::size_t k = 0; k < 3; ++k) sums->values.set(block.offset + 3 * row + k, moments[k]);
       sums->rounding[row] = rounding;

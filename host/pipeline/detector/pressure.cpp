@@ -41,18 +41,19 @@ vec3 lever_of(const SolvedContext& x, std::size_t face) {
   const BeamFaces& beam = x.solved.beam;
   const double *r = x.plan.constants.reference, *c = x.geometry.centre.data();
   const vec3 corner = v3(f.body[0] + (c[0] - r[0]), f.body[1] + (c[1] - r[1]), f.body[2] + (c[2] - r[2]));
-  const vec3 across = v3_fma(v.x_m3, beam.axis_x, v3_fma(v.y_m3, beam.axis_y, v3_scale(v.depth_m3, beam.toward)));
+  const vec3 across = v3_fma(v.x_m3, beam.axis_x, v3_fma(v.y_m3, beam.axis_y, v3_scale(-0.5 * v.path_m3, beam.toward)));
   return v3_fma(v.area_m2, corner, across);
 }
 
 /// Force and torque of a view, from its visible faces.
 void pressure_solved(const SolvedContext& x, Sums* sums) {
+  if (!x.solved.from_source) return;
   const SumShape& shape = x.plan.layout.shape;
   const SumBlock& block = x.plan.layout.blocks[x.detector.first_block];
   const double scale = x.plan.constants.unit_scale / x.plan.beams.area_m2[x.solved.view];
   for (std::size_t l = 0; l < shape.lanes; ++l) {
     const std::uint64_t row = block.offset + (x.solved.view * shape.lanes + l) * block.width;
-    for (std::size_t f = 0; f < x.solved.visible.size(); ++f) {
+    for (std::size_t f = 0; f < x.solved.beam.faces.size(); ++f) {
       const double area = x.solved.visible[f].area_m2;
       if (area == 0.0) continue;
       const vec3 push = push_of(x, f, l);

@@ -83,7 +83,8 @@ struct DetectorRoom {
   double (*picture_error)(const TargetContext&) = nullptr;                ///< of a view's picture, over its mean
   // Of exact passes. A detector that has sums and neither of these two is measured with points.
   void (*solved)(const SolvedContext&, Sums*) = nullptr;   ///< adds a view's sums
-  ClrayBinning (*binning)(const PassDetector&) = nullptr;  ///< the window of a histogram over path length: block 0
+  /// The window of a histogram over path length, block 0, of a connection.
+  ClrayBinning (*binning)(const PassDetector&, std::size_t connection) = nullptr;
 };
 
 /// The room of a row of detector.def; one with every default where it has none.
