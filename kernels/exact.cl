@@ -10,18 +10,18 @@
 #define CLRAY_ARGUMENT(type, name) type *name,
 #define CLRAY_VALUE(type, name) name,
 
-#define CLRAY_ENTRY(entry, carried)                                                             \
-  __kernel void entry(CLRAY_EXACT_BUFFERS(CLRAY_ARGUMENT) u32 count) {                          \
-    const u32 item = (u32)get_global_id(0);                                                     \
-    if (item >= count) return;                                                                  \
-    const Exact g = {CLRAY_EXACT_BUFFERS(CLRAY_VALUE)};                                         \
-    Fragment stack[CLRAY_EXACT_STACK];                                                          \
-    u32 full;                                                                                   \
-    const u32 done = exact_item(&g, item, carried, stack, CLRAY_EXACT_STACK, 0u, &full);        \
-    if (!full) return;                                                                          \
-    const u32 at = atomic_inc(unfinished);                                                      \
-    unfinished[1u + 2u * at] = item;                                                            \
-    unfinished[2u + 2u * at] = done;                                                            \
+#define CLRAY_ENTRY(entry, carried)                                                      \
+  __kernel void entry(CLRAY_EXACT_BUFFERS(CLRAY_ARGUMENT) u32 count) {                   \
+    const u32 item = (u32)get_global_id(0);                                              \
+    if (item >= count) return;                                                           \
+    const Exact g = {CLRAY_EXACT_BUFFERS(CLRAY_VALUE)};                                  \
+    Fragment stack[CLRAY_EXACT_STACK];                                                   \
+    u32 full;                                                                            \
+    const u32 done = exact_item(&g, item, carried, stack, CLRAY_EXACT_STACK, 0u, &full); \
+    if (!full) return;                                                                   \
+    const u32 at = atomic_inc(unfinished);                                               \
+    unfinished[1u + 2u * at] = item;                                                     \
+    unfinished[2u + 2u * at] = done;                                                     \
   }
 
 CLRAY_ENTRY(clray_exact, 0u)

@@ -12,8 +12,7 @@ constexpr double kRounding = 8.9e-16;  // of lengths: what a carried corner may 
 
 }  // namespace
 
-Carrier::Carrier(const BeamFaces& lit, const BeamFaces& seen)
-    : from_(lit), to_(seen), seen_(lit.faces.size(), -1) {
+Carrier::Carrier(const BeamFaces& lit, const BeamFaces& seen) : from_(lit), to_(seen), seen_(lit.faces.size(), -1) {
   std::uint32_t most = 0;
   for (const FaceOrigin& origin : seen.origins) most = std::max(most, origin.number);
   std::vector<std::int64_t> by_number(seen.origins.empty() ? 0 : most + std::size_t{1}, -1);
@@ -24,7 +23,8 @@ Carrier::Carrier(const BeamFaces& lit, const BeamFaces& seen)
     const std::int64_t there = number < by_number.size() ? by_number[number] : -1;
     if (there < 0) continue;
     // Normals look at where the beam comes from: on the same side they are the same.
-    const double side = v3_dot(v3_load(lit.faces[k].normal), v3_load(seen.faces[static_cast<std::size_t>(there)].normal));
+    const double side =
+        v3_dot(v3_load(lit.faces[k].normal), v3_load(seen.faces[static_cast<std::size_t>(there)].normal));
     if (side > 0.0) seen_[k] = there;
   }
 }
@@ -33,7 +33,8 @@ ClrayPiece Carrier::carry(const ClrayPiece& piece) const {
   const auto there = static_cast<std::uint32_t>(seen_[piece.face]);
   const ClrayFace &f = from_.faces[piece.face], &t = to_.faces[there];
   // A step across the light's beam is a step over the face, and that is one across the other beam.
-  const vec3 step_x = v3_fma(f.slope_x, from_.toward, from_.axis_x), step_y = v3_fma(f.slope_y, from_.toward, from_.axis_y);
+  const vec3 step_x = v3_fma(f.slope_x, from_.toward, from_.axis_x),
+             step_y = v3_fma(f.slope_y, from_.toward, from_.axis_y);
   const double xx = v3_dot(step_x, to_.axis_x), xy = v3_dot(step_y, to_.axis_x);
   const double yx = v3_dot(step_x, to_.axis_y), yy = v3_dot(step_y, to_.axis_y);
   ClrayPiece out = piece;

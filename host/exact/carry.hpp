@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lit pieces of faces, carried from the beam of the light to where an observer sees them. A piece lies in the plane of
-// its face, so it is the face that carries it: no face is projected along a foreign direction, and nothing becomes huge.
+// its face, so it is the face that carries it: no face is projected along a foreign direction, and nothing becomes
+// huge.
 #pragma once
 
 #include <cstdint>

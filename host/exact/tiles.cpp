@@ -194,8 +194,8 @@ class Cutter {
   const std::vector<ClrayPiece>* pieces_;
   const std::function<bool(const TileFaces&)>& leaf_;
   std::vector<Edges> edges_;
-  std::vector<Rectangle> boxes_;         // of the pieces
-  std::vector<std::uint64_t> kept_in_;   // the last tile that kept a face
+  std::vector<Rectangle> boxes_;        // of the pieces
+  std::vector<std::uint64_t> kept_in_;  // the last tile that kept a face
   std::uint64_t tile_ = 0;
   std::vector<std::uint32_t> largest_first_;
   std::deque<std::array<Held, 4>> pools_;

@@ -12,8 +12,8 @@
 namespace clray {
 namespace {
 
-constexpr std::size_t kGroup = 64;       // work-items
-constexpr std::size_t kLitOfItem = 4;    // pieces that there is room for, on average: the host does the rest
+constexpr std::size_t kGroup = 64;     // work-items
+constexpr std::size_t kLitOfItem = 4;  // pieces that there is room for, on average: the host does the rest
 
 /// Work-groups of items in an order that spreads neighbours, which are of one tile and so of like cost: drivers give
 /// each core a run of work-groups. No result depends on it.
@@ -54,8 +54,7 @@ ExactDevice::ExactDevice(OpenedDevice& device, const ProgramOptions& options, co
                          std::uint64_t bins)
     : opened_(device), numbers_(numbers), bin_count_(bins) {
   const std::string source = program_source(opened_, "exact.cl", options);
-  kernels_ =
-      exact_kernels(opened_, build_source(opened_, "exact.cl", source, options.warnings_are_errors), numbers_);
+  kernels_ = exact_kernels(opened_, build_source(opened_, "exact.cl", source, options.warnings_are_errors), numbers_);
   run_exact_self_test(opened_, source, kernels_, numbers_);
   bins_ = make_zero_buffer<i64>(opened_, bins);
 }

@@ -16,9 +16,9 @@ namespace clray {
 /// Faces of some views, as they are seen from the source or by an observer elsewhere.
 struct FaceGroup {
   std::vector<ClrayFace> faces;
-  std::vector<double> weights;          ///< of their lanes
+  std::vector<double> weights;         ///< of their lanes
   std::vector<ClrayBinning> binnings;  ///< the windows of the delay detectors
-  bool carried = false;                 ///< lit pieces are looked for, not faces
+  bool carried = false;                ///< lit pieces are looked for, not faces
 };
 
 /// Tiles of such a group, and items: pairs of a tile and a face, each with its piece where pieces are looked for.

@@ -74,7 +74,7 @@ struct Group {
   std::vector<BeamFaces> beams;
   std::vector<std::size_t> offsets;  // of each beam's faces
   FaceGroup on_device;
-  std::vector<VisibleFace> visible;            // in the end, of all beams
+  std::vector<VisibleFace> visible;          // in the end, of all beams
   std::vector<std::vector<ClrayPiece>> lit;  // of each beam, in the end: what other sights look for
 
   std::size_t end_view() const { return first_view + beams.size(); }
@@ -295,8 +295,12 @@ class Solver {
     for (std::size_t k = 0; k < group.beams.size(); ++k) {
       const BeamFaces& beam = group.beams[k];
       const double* weights = group.on_device.weights.data() + group.offsets[k] * plan_.request.lanes.size();
-      const SolvedView solved{group.first_view + k, is_source(sight), sight.connections,
-                              beam,                 group.visible.data() + group.offsets[k], weights};
+      const SolvedView solved{group.first_view + k,
+                              is_source(sight),
+                              sight.connections,
+                              beam,
+                              group.visible.data() + group.offsets[k],
+                              weights};
       for (const PassDetector& d : plan_.detectors) {
         const auto add = room_of(d).solved;
         if (add != nullptr) add({plan_, d, geometry_, solved}, &sums_);

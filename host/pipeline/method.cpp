@@ -63,9 +63,18 @@ std::string obstacle(const Scene& scene, const DetectorSpec& detector) {
   return obstacle_to(scene, row);
 }
 
-/// What solving so many views takes, s on one core.
-double seconds_to_solve(const Geometry& geometry, std::size_t views) {
-  return kSecondsPerFace * static_cast<double>(geometry.primitives.size()) * static_cast<double>(views);
+/// From how many directions a detector's views are solved: the source, and each observer elsewhere.
+std::size_t sights_of(const Scene& scene, const DetectorSpec& detector) {
+  if (!table_row("detector", detector.kind).connects) return 1;
+  const auto elsewhere = std::count_if(scene.observers.begin(), scene.observers.end(), [&](const Observer& o) {
+    return scene.trace.force_bistatic || !at_source(o, scene.source);
+  });
+  return 1 + static_cast<std::size_t>(elsewhere);
+}
+
+/// What solving a body so many times takes, s on one core.
+double seconds_to_solve(const Geometry& geometry, std::size_t times) {
+  return kSecondsPerFace * static_cast<double>(geometry.primitives.size()) * static_cast<double>(times);
 }
 
 /// What as many rays take as are traced by default.
@@ -97,7 +106,7 @@ MethodChoice choose_method(const Scene& scene, const Geometry& geometry, const D
   }
   if (t.rays != 0) return {false, fmt::format("rays = {} are asked for", t.rays)};
   if (!why.empty()) return {false, why};
-  const double seconds = seconds_to_solve(geometry, views);
+  const double seconds = seconds_to_solve(geometry, views * sights_of(scene, detector));
   // An exact pass that time cuts off has no result.
   if (t.time_limit_s > 0.0 && seconds > 0.5 * t.time_limit_s)
     return {false, fmt::format("solving it may take longer than the time limit of {:g} s", t.time_limit_s)};

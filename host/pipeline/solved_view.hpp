@@ -21,7 +21,7 @@ struct VisibleFace {
 /// What is lit of a body in one view, or lit and seen from elsewhere.
 struct SolvedView {
   std::size_t view = 0;
-  bool from_source = true;                       ///< all that is lit is there, seen or not
+  bool from_source = true;                      ///< all that is lit is there, seen or not
   const std::vector<std::size_t>& connections;  ///< of the pass: the observers that see this
   const BeamFaces& beam;
   const VisibleFace* visible;  ///< of each face

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a visible piece of a face adds: area, first moments, and moments of path length. That is linear over a face, so
-// the integrals of a convex polygon are closed forms; sums over the triangles from its first corner (docs/exact.md). Every
-// piece enters as integers, so their order cannot change a bit.
+// the integrals of a convex polygon are closed forms; sums over the triangles from its first corner (docs/exact.md).
+// Every piece enters as integers, so their order cannot change a bit.
 #ifndef CLRAY_EXACT_INTEGRALS_CL
 #define CLRAY_EXACT_INTEGRALS_CL
 

@@ -82,7 +82,7 @@ struct DetectorRoom {
   void (*results)(const RoomResults&) = nullptr;                          ///< default: a table of numbers with a unit
   double (*picture_error)(const TargetContext&) = nullptr;                ///< of a view's picture, over its mean
   // Of exact passes. A detector that has sums and neither of these two is measured with points.
-  void (*solved)(const SolvedContext&, Sums*) = nullptr;   ///< adds a view's sums
+  void (*solved)(const SolvedContext&, Sums*) = nullptr;  ///< adds a view's sums
   /// The window of a histogram over path length, block 0, of a connection.
   ClrayBinning (*binning)(const PassDetector&, std::size_t connection) = nullptr;
 };
