@@ -31,7 +31,7 @@ bool face_hides(const ClrayFace& front, const ClrayFace& face, double margin) {
   return hides(&front, &face, margin, h) == CLRAY_EVERYWHERE;
 }
 
-void exact_item_on_host(const ExactBuffers& buffers, const ExactNumbers& numbers, bool carried, std::uint32_t item,
+void exact_item_on_host(const ExactBuffers& buffers, const ExactNumbers& numbers, bool seen, std::uint32_t item,
                         std::uint32_t skip, std::vector<ClrayPiece>* lit) {
   constexpr std::uint32_t kMostWaiting = 1u << 20, kLitTogether = 1024;
   host_numbers = numbers;
@@ -48,7 +48,7 @@ void exact_item_on_host(const ExactBuffers& buffers, const ExactNumbers& numbers
     count[0] = 0;
     count[1] = static_cast<std::uint32_t>(pieces.size());
     const std::uint32_t done =
-        exact_item(&g, item, carried ? 1u : 0u, stack.data(), static_cast<u32>(stack.size()), skip, &full);
+        exact_item(&g, item, seen ? 1u : 0u, stack.data(), static_cast<u32>(stack.size()), skip, &full);
     lit->insert(lit->end(), pieces.begin(), pieces.begin() + std::min(count[0], count[1]));
     if (!full) return;
     skip = std::max(skip, done);

@@ -28,10 +28,10 @@ struct ExactNumbers {
   bool carry = false;       ///< observers are elsewhere: lit pieces are carried to their views
 };
 
-/// One item, as a work-item of a device does it, from the fragment numbered `skip` on: a face in a tile, or (`carried`)
+/// One item, as a work-item of a device does it, from the fragment numbered `skip` on: a face in a tile, or (`seen`)
 /// a lit piece in a tile of an observer's view. Appends lit pieces to *lit; `buffers` needs no room for them. Throws
 /// Error(bug) where the fragments that wait grow beyond all bounds.
-void exact_item_on_host(const ExactBuffers& buffers, const ExactNumbers& numbers, bool carried, std::uint32_t item,
+void exact_item_on_host(const ExactBuffers& buffers, const ExactNumbers& numbers, bool seen, std::uint32_t item,
                         std::uint32_t skip, std::vector<ClrayPiece>* lit);
 
 }  // namespace clray

@@ -36,13 +36,6 @@ void spread(ItemBatch* batch) {
 
 }  // namespace
 
-ExactKernels exact_kernels(OpenedDevice& device, const cl::Program& program, const ExactNumbers& numbers) {
-  ExactKernels kernels;
-  kernels.faces = make_kernel(device, program, "clray_exact");
-  if (numbers.carry) kernels.pieces = make_kernel(device, program, "clray_exact_seen");
-  return kernels;
-}
-
 void ItemBatch::clear() {
   tiles.clear();
   lists.clear();
@@ -54,14 +47,14 @@ ExactDevice::ExactDevice(OpenedDevice& device, const ProgramOptions& options, co
                          std::uint64_t bins)
     : opened_(device), numbers_(numbers), bin_count_(bins) {
   const std::string source = program_source(opened_, "exact.cl", options);
-  kernels_ = exact_kernels(opened_, build_source(opened_, "exact.cl", source, options.warnings_are_errors), numbers_);
-  run_exact_self_test(opened_, source, kernels_, numbers_);
+  kernel_ = make_kernel(opened_, build_source(opened_, "exact.cl", source, options.warnings_are_errors), "clray_exact");
+  run_exact_self_test(opened_, source, kernel_, numbers_);
   bins_ = make_zero_buffer<i64>(opened_, bins);
 }
 
-ExactDevice::ExactDevice(OpenedDevice& device, const ExactKernels& kernels, const ExactNumbers& numbers,
+ExactDevice::ExactDevice(OpenedDevice& device, const cl::Kernel& kernel, const ExactNumbers& numbers,
                          std::uint64_t bins)
-    : opened_(device), numbers_(numbers), bin_count_(bins), kernels_(kernels) {
+    : opened_(device), numbers_(numbers), bin_count_(bins), kernel_(kernel) {
   check_sums_size(opened_, bins);
   bins_ = make_zero_buffer<i64>(opened_, bins);
 }
@@ -82,7 +75,7 @@ void ExactDevice::launch_batch(ItemBatch* batch) {
   batch->clear();
   if (batch_.size() == 0) return;
   spread(&batch_);
-  const std::size_t room = numbers_.carry && !group_->carried ? kLitOfItem * batch_.size() : 0;
+  const std::size_t room = numbers_.carry && !group_->seen ? kLitOfItem * batch_.size() : 0;
   tiles_ = make_buffer(opened_, batch_.tiles);
   lists_ = make_buffer(opened_, batch_.lists);
   items_ = make_buffer(opened_, batch_.items);
@@ -90,10 +83,9 @@ void ExactDevice::launch_batch(ItemBatch* batch) {
   unfinished_ = make_zero_buffer<std::uint32_t>(opened_, 1 + 2 * batch_.size());
   lit_ = make_buffer<ClrayPiece>(opened_, room);
   lit_count_ = make_buffer(opened_, std::vector<std::uint32_t>{0, static_cast<std::uint32_t>(room)}, CL_MEM_READ_WRITE);
-  cl::Kernel& kernel = group_->carried ? kernels_.pieces : kernels_.faces;
-  set_arguments(opened_, kernel, faces_, weights_, tiles_, lists_, items_, binning_, pieces_, sums_, bins_, unfinished_,
-                lit_, lit_count_, static_cast<cl_uint>(batch_.size()));
-  launch(opened_, kernel, batch_.size(), kGroup);
+  set_arguments(opened_, kernel_, faces_, weights_, tiles_, lists_, items_, binning_, pieces_, sums_, bins_,
+                unfinished_, lit_, lit_count_, cl_uint{group_->seen ? 1u : 0u}, static_cast<cl_uint>(batch_.size()));
+  launch(opened_, kernel_, batch_.size(), kGroup);
   with_cl_errors(opened_.info.name, [&] { opened_.queue.flush(); });
 }
 
@@ -101,7 +93,7 @@ void ExactDevice::finish_batch() {
   if (batch_.size() == 0) return;
   const std::uint32_t count = read_buffer<std::uint32_t>(opened_, unfinished_, 1).front();
   finish_on_host(read_buffer<std::uint32_t>(opened_, unfinished_, 2 * static_cast<std::size_t>(count), 1));
-  if (numbers_.carry && !group_->carried) {
+  if (numbers_.carry && !group_->seen) {
     const auto lit = read_buffer<std::uint32_t>(opened_, lit_count_, 2);
     const auto pieces = read_buffer<ClrayPiece>(opened_, lit_, std::min(lit[0], lit[1]));
     found_lit_.insert(found_lit_.end(), pieces.begin(), pieces.end());
@@ -124,7 +116,7 @@ void ExactDevice::finish_on_host(const std::vector<std::uint32_t>& unfinished) {
   host.sums = host_sums_.data();
   host.bins = host_bins_.data();
   for (std::size_t k = 0; k < unfinished.size(); k += 2)
-    exact_item_on_host(host, numbers_, group_->carried, unfinished[k], unfinished[k + 1], &found_lit_);
+    exact_item_on_host(host, numbers_, group_->seen, unfinished[k], unfinished[k + 1], &found_lit_);
 }
 
 void ExactDevice::end_group(std::vector<i64>* sums, std::vector<ClrayPiece>* lit) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The kernels of exact passes on one device: faces of a group of views stay there while batches of items are launched;
+// The kernel of exact passes on one device: faces of a group of views stay there while batches of items are launched;
 // their sums, and the lit pieces that observers elsewhere look for, are read back. What a device leaves unfinished, the
 // host does.
 #pragma once
@@ -18,7 +18,7 @@ struct FaceGroup {
   std::vector<ClrayFace> faces;
   std::vector<double> weights;         ///< of their lanes
   std::vector<ClrayBinning> binnings;  ///< the windows of the delay detectors
-  bool carried = false;                ///< lit pieces are looked for, not faces
+  bool seen = false;                   ///< lit pieces are looked for, not faces
 };
 
 /// Tiles of such a group, and items: pairs of a tile and a face, each with its piece where pieces are looked for.
@@ -32,20 +32,14 @@ struct ItemBatch {
   void clear();
 };
 
-/// The kernels of a program.
-struct ExactKernels {
-  cl::Kernel faces, pieces;  ///< null: the second, where nothing is carried
-};
-ExactKernels exact_kernels(OpenedDevice& device, const cl::Program& program, const ExactNumbers& numbers);
-
 class ExactDevice {
  public:
   /// Builds the program, or takes what was built before, and tests it once per device. `bins`: numbers of all
   /// histograms. Throws Error(device).
   ExactDevice(OpenedDevice& device, const ProgramOptions& options, const ExactNumbers& numbers, std::uint64_t bins);
 
-  /// The same with kernels that were built before, which are not tested.
-  ExactDevice(OpenedDevice& device, const ExactKernels& kernels, const ExactNumbers& numbers, std::uint64_t bins);
+  /// The same with a kernel that was built before, which is not tested.
+  ExactDevice(OpenedDevice& device, const cl::Kernel& kernel, const ExactNumbers& numbers, std::uint64_t bins);
 
   /// The faces that the next batches are of. `group` must stay until end_group().
   void begin_group(const FaceGroup& group);
@@ -63,7 +57,7 @@ class ExactDevice {
   OpenedDevice& opened_;
   ExactNumbers numbers_;
   std::uint64_t bin_count_;
-  ExactKernels kernels_;
+  cl::Kernel kernel_;
   cl::Buffer faces_, weights_, binning_, sums_, bins_, tiles_, lists_, items_, pieces_, unfinished_, lit_, lit_count_;
   const FaceGroup* group_ = nullptr;
   ItemBatch batch_;  // that runs

@@ -183,7 +183,7 @@ class Solver {
   /// What of the lit pieces an observer elsewhere sees.
   bool solve_seen(const Sight& sight, const Group& lit) {
     Group group = empty_group(sight, lit.first_view);
-    group.on_device.carried = true;
+    group.on_device.seen = true;
     std::vector<Carrier> carriers;
     for (std::size_t v = lit.first_view; v < lit.end_view(); ++v) add_view(sight, v, &group);
     for (std::size_t k = 0; k < group.beams.size(); ++k) carriers.emplace_back(lit.beams[k], group.beams[k]);

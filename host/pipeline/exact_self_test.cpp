@@ -82,14 +82,14 @@ Solved solve_on_host(const FaceGroup& group, const ItemBatch& batch, const Exact
   host.pieces = batch.pieces.data();
   host.sums = out.sums.data();
   host.bins = out.bins.data();
-  for (std::uint32_t k = 0; k < batch.size(); ++k) exact_item_on_host(host, numbers, group.carried, k, 0, &out.lit);
+  for (std::uint32_t k = 0; k < batch.size(); ++k) exact_item_on_host(host, numbers, group.seen, k, 0, &out.lit);
   return out;
 }
 
-Solved solve_on_device(OpenedDevice& opened, const ExactKernels& kernels, const FaceGroup& group, ItemBatch batch,
+Solved solve_on_device(OpenedDevice& opened, const cl::Kernel& kernel, const FaceGroup& group, ItemBatch batch,
                        const ExactNumbers& numbers, std::size_t bins) {
   Solved out{std::vector<i64>(group.faces.size() * CLRAY_FACE_SUMS), std::vector<i64>(bins), {}};
-  ExactDevice device(opened, kernels, numbers, bins);
+  ExactDevice device(opened, kernel, numbers, bins);
   device.begin_group(group);
   device.launch_batch(&batch);
   device.end_group(&out.sums, &out.lit);
@@ -110,10 +110,10 @@ std::vector<i64> bits_of(std::vector<ClrayPiece> lit) {
   return bits;
 }
 
-Solved compared(OpenedDevice& opened, const ExactKernels& kernels, const FaceGroup& group, const ItemBatch& batch,
+Solved compared(OpenedDevice& opened, const cl::Kernel& kernel, const FaceGroup& group, const ItemBatch& batch,
                 const ExactNumbers& numbers, std::size_t bins) {
   Solved right = solve_on_host(group, batch, numbers, bins);
-  const Solved found = solve_on_device(opened, kernels, group, batch, numbers, bins);
+  const Solved found = solve_on_device(opened, kernel, group, batch, numbers, bins);
   compare(opened, "sum", right.sums, found.sums);
   compare(opened, "bin", right.bins, found.bins);
   compare(opened, "number of a lit piece", bits_of(right.lit), bits_of(found.lit));
@@ -122,7 +122,7 @@ Solved compared(OpenedDevice& opened, const ExactKernels& kernels, const FaceGro
 
 }  // namespace
 
-void run_exact_self_test(OpenedDevice& opened, const std::string& source, const ExactKernels& kernels,
+void run_exact_self_test(OpenedDevice& opened, const std::string& source, const cl::Kernel& kernel,
                          const ExactNumbers& numbers) {
   const std::string what = "solved\n" + source;
   if (remembered(opened, what)) return;
@@ -143,10 +143,10 @@ void run_exact_self_test(OpenedDevice& opened, const std::string& source, const 
     for (const std::uint32_t tile : {0u, 1u}) batch.items.insert(batch.items.end(), {tile, f});
   }
   const std::uint64_t bins = numbers.binnings * row;
-  const Solved lit = compared(opened, kernels, group, batch, numbers, bins);
+  const Solved lit = compared(opened, kernel, group, batch, numbers, bins);
   if (numbers.carry) {
     // As if an observer elsewhere saw them in the same places.
-    group.carried = true;
+    group.seen = true;
     batch.items.clear();
     for (const ClrayPiece& piece : lit.lit) {
       if (piece.corners == 0) continue;
@@ -155,7 +155,7 @@ void run_exact_self_test(OpenedDevice& opened, const std::string& source, const 
         batch.pieces.push_back(piece);
       }
     }
-    compared(opened, kernels, group, batch, numbers, bins);
+    compared(opened, kernel, group, batch, numbers, bins);
   }
   remember(opened, what);
 }

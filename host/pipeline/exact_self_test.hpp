@@ -9,11 +9,9 @@
 
 namespace clray {
 
-struct ExactKernels;
-
 /// Tests a program of exact.cl, unless it passed on this device before. Throws Error(device) with the first sum that is
 /// wrong.
-void run_exact_self_test(OpenedDevice& opened, const std::string& source, const ExactKernels& kernels,
+void run_exact_self_test(OpenedDevice& opened, const std::string& source, const cl::Kernel& kernel,
                          const ExactNumbers& numbers);
 
 }  // namespace clray

@@ -277,28 +277,28 @@ static u32 carry_piece(const Exact* g, u32 own, const Fragment* f) {
 }
 
 /// Notes what is visible of a fragment. Returns 0 where there is no room for it.
-static u32 take_piece(const Exact* g, u32 own, u32 carried, const Fragment* f, Kept* kept) {
+static u32 take_piece(const Exact* g, u32 own, u32 seen, const Fragment* f, Kept* kept) {
   const __global ClrayFace* face = g->faces + own;
-  if (CLRAY_CARRY && !carried && face->carried && !carry_piece(g, own, f)) return 0u;
+  if (CLRAY_CARRY && !seen && face->carried && !carry_piece(g, own, f)) return 0u;
   const f64 area = 0.5 * fragment_area2(f);
   keep_piece(face, f, area, kept);
-  if (carried || CLRAY_FROM_SOURCE) add_to_bins(g, own, f, area);
+  if (seen || CLRAY_FROM_SOURCE) add_to_bins(g, own, f, area);
   return 1u;
 }
 
-/// One face in one tile, or (carried) one lit piece of it in a tile of an observer's view. Its fragments are taken one
+/// One face in one tile, or (seen) one lit piece of it in a tile of an observer's view. Its fragments are taken one
 /// after the other; those before the `skip`-th add nothing. Returns how many were done; *full is 1 where the stack had
 /// no more room for the next, or the lit pieces had none.
-static u32 exact_item(const Exact* g, u32 item, u32 carried, Fragment* stack, u32 room, u32 skip, u32* full) {
+static u32 exact_item(const Exact* g, u32 item, u32 seen, Fragment* stack, u32 room, u32 skip, u32* full) {
   const __global ClrayTile* tile = g->tiles + g->items[2u * item];
   const u32 own = g->items[2u * item + 1u];
   const __global ClrayFace* face = g->faces + own;
   Waiting waiting = {stack, 0u, room};
   Kept kept;
   for (u32 k = 0; k < CLRAY_FACE_SUMS; ++k) kept.sum[k] = 0;
-  if (CLRAY_CARRY && carried) fragment_of_piece(g->pieces + item, stack);
-  if (!(CLRAY_CARRY && carried)) fragment_of_face(face, stack);
-  const f64 off = fma(CLRAY_ROUNDING, tile->size, CLRAY_CARRY && carried ? g->pieces[item].off : 0.0);
+  if (CLRAY_CARRY && seen) fragment_of_piece(g->pieces + item, stack);
+  if (!(CLRAY_CARRY && seen)) fragment_of_face(face, stack);
+  const f64 off = fma(CLRAY_ROUNDING, tile->size, CLRAY_CARRY && seen ? g->pieces[item].off : 0.0);
   *full = fragment_in_tile(stack, tile) ? 0u : 1u;
   stack[0].next = 0u;
   if (stack[0].corners >= 3u) waiting.count = 1u;
@@ -310,7 +310,7 @@ static u32 exact_item(const Exact* g, u32 item, u32 carried, Fragment* stack, u3
     const u32 end = cut_all(g, tile, own, CLRAY_SLIVER * whole2, &f, &waiting, &lost);
     if (end == CLRAY_PIECE_FULL) *full = 1u;
     if (end == CLRAY_PIECE_VISIBLE && done >= skip) {
-      if (!take_piece(g, own, carried, &f, &kept)) *full = 1u;
+      if (!take_piece(g, own, seen, &f, &kept)) *full = 1u;
       lost = fma(off, extent_size(fragment_extent(&f)), lost);
     }
     if (!*full && done++ >= skip) kept.sum[CLRAY_FACE_LOST] += convert_long_rte(lost * face->area_scale);

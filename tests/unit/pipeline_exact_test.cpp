@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The kernels of exact passes on a device against the same text on the host, with stacks so small that the host must
+// The kernel of exact passes on a device against the same text on the host, with stacks so small that the host must
 // finish most items.
 #include <doctest/doctest.h>
 
@@ -7,7 +7,6 @@
 
 #include "clray/device.hpp"
 #include "device/buffers.hpp"
-#include "pipeline/exact_device.hpp"
 #include "pipeline/exact_self_test.hpp"
 
 using namespace clray;
@@ -25,9 +24,9 @@ TEST_CASE("exact passes: what a full stack leaves is finished by the host, to th
                        {"CLRAY_FROM_SOURCE", "1"},
                        {"CLRAY_CARRY", "1"}};
     const std::string source = program_source(opened, "exact.cl", options);
-    const ExactKernels kernels = exact_kernels(opened, build_source(opened, "exact.cl", source, true), numbers);
+    const cl::Kernel kernel = make_kernel(opened, build_source(opened, "exact.cl", source, true), "clray_exact");
     // The name is new to the memory of what passed, so the test runs.
     const std::string name = std::string("test of ") + room + std::to_string(reinterpret_cast<std::uintptr_t>(&opened));
-    CHECK_NOTHROW(run_exact_self_test(opened, name, kernels, numbers));
+    CHECK_NOTHROW(run_exact_self_test(opened, name, kernel, numbers));
   }
 }
