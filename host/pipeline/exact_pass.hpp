@@ -8,13 +8,9 @@
 #include <memory>
 
 #include "clray/device.hpp"
-#include "exact/portable_faces.hpp"
 #include "pipeline/plan.hpp"
 
 namespace clray {
-
-/// What the program of an exact pass is built with.
-ExactNumbers exact_numbers(const PassPlan& plan);
 
 /// One program and its buffers on every opened device.
 class ExactPass {

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "pipeline/detector/room.hpp"
-#include "pipeline/exact_pass.hpp"
+#include "pipeline/exact_sights.hpp"
 #include "pipeline/plan.hpp"
 #include "scene/tables.hpp"
 

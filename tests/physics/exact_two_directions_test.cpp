@@ -5,32 +5,19 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <random>
 
 #include "clray/error.hpp"
 #include "clray/trace.hpp"
 #include "reference/lit_and_seen.hpp"
-#include "support/checks.hpp"
+#include "support/exact_checks.hpp"
 
 using namespace clray_test;
 
 namespace {
 
-constexpr double kExact = 1e-12;
-
-clray::Result solve(clray::Scene scene) {
-  scene.trace.method = clray::Method::exact;
-  scene.trace.rays = 0;
-  return run(scene);
-}
-
 clray::Scene seen(const MeshPtr& mesh, clray::Vec3 s, clray::Vec3 o, double rho = 0.5) {
   clray::Scene scene = scene_of(mesh, lambert(rho));
   return bistatic(scene, s, o);
-}
-
-const clray::Estimate& total(const clray::Result& result) {
-  return result.delay.at(0).intensity_m2_per_sr;
 }
 
 clray::Vec3 unit(clray::Vec3 v) {
@@ -40,44 +27,6 @@ clray::Vec3 unit(clray::Vec3 v) {
 
 std::array<double, 3> array_of(clray::Vec3 v) {
   return {v.x, v.y, v.z};
-}
-
-using Triangles = std::vector<std::array<clray::Vec3, 3>>;
-
-MeshPtr mesh_of(const Triangles& triangles) {
-  auto mesh = std::make_shared<clray::Mesh>();
-  mesh->material_slots = {""};
-  for (const auto& t : triangles) {
-    const auto first = static_cast<std::uint32_t>(mesh->vertices.size());
-    mesh->vertices.insert(mesh->vertices.end(), t.begin(), t.end());
-    mesh->triangles.push_back({first, first + 1, first + 2});
-    mesh->triangle_slot.push_back(0);
-  }
-  return mesh;
-}
-
-Triangles soup(std::uint64_t seed, int count, double size) {
-  std::mt19937_64 random(seed);
-  const auto number = [&] { return 2.0 * std::ldexp(static_cast<double>(random() >> 11), -53) - 1.0; };
-  Triangles triangles;
-  for (int k = 0; k < count; ++k) {
-    const clray::Vec3 p(number(), number(), number());
-    std::array<clray::Vec3, 3> t;
-    for (auto& corner : t) corner = p + size * clray::Vec3(number(), number(), number());
-    triangles.push_back(t);
-  }
-  return triangles;
-}
-
-void check_exact(const clray::Result& result, double expected) {
-  const clray::DelayResult& d = result.delay.at(0);
-  CHECK(total(result).value == relative(expected).epsilon(kExact));
-  CHECK(total(result).standard_error == 0.0);
-  CHECK(total(result).rounding_bound >= std::fabs(total(result).value - expected) * (1.0 - 1e-3));
-  CHECK(total(result).rounding_bound < 1e-10 * expected);
-  double sum = d.below_m2_per_sr + d.above_m2_per_sr;
-  for (const double bin : d.bin_m2_per_sr) sum += bin;
-  CHECK(sum == relative(total(result).value).epsilon(kExact));
 }
 
 }  // namespace
