@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "beam/beams.hpp"
+#include "beam/cell_weights.hpp"
 #include "beam/silhouette.hpp"
-#include "body/portable_tables.hpp"
 
 namespace clray {
 namespace {
@@ -15,7 +15,6 @@ namespace {
 constexpr double kMostStrips = 1024.0;   // over the body, of path length
 constexpr int kMostCuts = 32;            // parts of a cell
 constexpr double kMostPieces = 1 << 27;  // over all views; cells are rarely cut into so many
-constexpr std::size_t kMostLooks = 16;   // weights of a cell: observers times lanes
 constexpr std::size_t kStretch = 4;      // intervals of path on either side that share one probability
 // These shares of the probability follow area and path length; the rest follows what the surface sends.
 constexpr double kByArea = 0.25;
@@ -75,7 +74,10 @@ class Stratifier {
     cells_ = &cells;
     cell_u_ = grid_.size_u / n_;
     cell_v_ = grid_.size_v / n_;
-    plan_weights();
+    const CellsOfView all{geometry_, steering_, beams_, v_, grid_, cells};
+    if (steering_.by == Steering::By::direct) weights_ = direct_weights(all);
+    if (steering_.by == Steering::By::exchange) weights_ = exchange_weights(all);
+    weights_.resize(cells.size());
     by_path_ = steering_.bins.has_value();
     if (by_path_) plan_strips(reference);
     for (const std::uint32_t cell : order) {
@@ -91,34 +93,6 @@ class Stratifier {
   vec3 to_beam(const double* x) const {
     const vec3 body = v3_load(x);
     return v3(v3_dot(body, grid_.u), v3_dot(body, grid_.v), v3_dot(body, grid_.toward));
-  }
-
-  /// The share of the light sent to the observers that each cell sends: the mean over observers and some lanes.
-  void plan_weights() {
-    weights_.assign(cells_->size(), 0.0);
-    if (!steering_.connect) return;
-    const std::size_t connections = beams_.connections.size() / beams_.views.size();
-    const std::size_t lanes = steering_.lanes, most = std::max<std::size_t>(kMostLooks / connections, 1);
-    const std::size_t step = (lanes + most - 1) / most;
-    std::vector<double> found(cells_->size());
-    for (std::size_t c = 0; c < connections; ++c) {
-      const vec3 o = to_beam(beams_.connections[v_ * connections + c].direction);
-      for (std::size_t lane = 0; lane < lanes; lane += step) {
-        double sum = 0.0;
-        for (std::size_t k = 0; k < found.size(); ++k) sum += found[k] = weight_of((*cells_)[k], lane, o);
-        for (std::size_t k = 0; k < found.size() && sum > 0.0; ++k) weights_[k] += found[k] / sum;
-      }
-    }
-  }
-
-  double weight_of(const BeamCell& cell, std::size_t lane, const vec3& o) const {
-    if (cell.state == BeamCell::empty || !(cell.normal.z > 0.0)) return 0.0;
-    const ClrayPrimitive& primitive = geometry_.primitives[cell.primitive];
-    const ClrayMaterial& material = steering_.materials.rows[lane * steering_.materials.columns + primitive.material];
-    if (cell.back && !(material.flags & CLRAY_MATERIAL_TWO_SIDED)) return 0.0;
-    const vec3 n = v3_unit(cell.normal);
-    if (!(v3_dot(n, o) > 0.0)) return 0.0;
-    return surface_weight(material, steering_.materials.tables, n, v3(0.0, 0.0, 1.0), o);
   }
 
   /// Strips end at edges of the first histogram's bins. A strip is some bins, or a whole part of one; a body has 256 to

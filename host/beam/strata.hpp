@@ -29,7 +29,9 @@ struct PathBins {
 struct Steering {
   const MaterialTable& materials;
   std::size_t lanes;
-  bool connect;  ///< what surfaces send to observers counts
+  /// What they follow beside area and path length: nothing, what surfaces send to the observers, or what surfaces that
+  /// the source sees send there by way of one another.
+  enum class By { area, direct, exchange } by;
   const PathRanges& paths;
   std::optional<PathBins> bins;  ///< strips of path length end at these edges
 };

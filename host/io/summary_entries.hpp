@@ -43,6 +43,14 @@ inline Json method_of(double rounding_bound) {
   return {{"method", "exact"}, {"rounding_bound", rounding_bound}};
 }
 
+/// The same of A, whose first bounce alone may be exact.
+inline Json method_of(const Estimate& intensity) {
+  if (!intensity.partly_exact()) return method_of(intensity.rounding_bound);
+  return {{"method", "exact first bounce"},
+          {"rounding_bound", intensity.rounding_bound},
+          {"first_bounce_m2_per_sr", intensity.exact_part}};
+}
+
 class SummaryEntries {
  public:
   explicit SummaryEntries(const Writer& w) : writer(w) {}

@@ -72,6 +72,13 @@ Estimate exact_number(double value) {
   return e;
 }
 
+void set_error(double standard_error, std::size_t replicates, Estimate* estimate) {
+  const double half = student_t95(static_cast<int>(replicates) - 1) * standard_error;
+  estimate->standard_error = standard_error;
+  estimate->low = estimate->value - half;
+  estimate->high = estimate->value + half;
+}
+
 Estimate estimate_mean(const std::vector<double>& replicates) {
   if (replicates.size() == 1) return exact_number(replicates.front());
   const double count = static_cast<double>(replicates.size());
@@ -85,10 +92,7 @@ Estimate estimate_mean(const std::vector<double>& replicates) {
     second += square;
     fourth += square * square;
   }
-  e.standard_error = std::sqrt(second / (count * (count - 1.0)));
-  const double half = student_t95(static_cast<int>(replicates.size()) - 1) * e.standard_error;
-  e.low = e.value - half;
-  e.high = e.value + half;
+  set_error(std::sqrt(second / (count * (count - 1.0))), replicates.size(), &e);
   e.relative_variance_of_variance = variance_of_variance(second, fourth, count);
   return e;
 }
@@ -102,14 +106,14 @@ bool agree(double value, double standard_error) {
   return standard_error <= kRounding * std::fabs(value);
 }
 
-Estimate estimate_total(const std::vector<double>& replicates, double rays) {
+Estimate estimate_total(const std::vector<double>& replicates, double rays, double solved) {
+  if (replicates.size() == 1) return exact_number(replicates.front() + solved);
   Estimate e = estimate_mean(replicates);
-  if (replicates.size() == 1) return e;
-  if (!agree(e.value, e.standard_error) || !(rays > 0.0)) return e;
-  e.standard_error = error_of_agreement(replicates.size()) * std::fabs(e.value) / rays;
-  const double half = student_t95(static_cast<int>(replicates.size()) - 1) * e.standard_error;
-  e.low = e.value - half;
-  e.high = e.value + half;
+  double error = e.standard_error;
+  if (agree(e.value, error) && rays > 0.0)
+    error = error_of_agreement(replicates.size()) * std::fabs(e.value != 0.0 ? e.value : solved) / rays;
+  e.value += solved;
+  set_error(error, replicates.size(), &e);
   return e;
 }
 
@@ -126,10 +130,7 @@ Estimate estimate_jackknife(double pooled, const std::vector<double>& left_out) 
   }
   Estimate e;
   e.value = pooled;
-  e.standard_error = std::sqrt(second * (count - 1.0) / count);
-  const double half = student_t95(static_cast<int>(left_out.size()) - 1) * e.standard_error;
-  e.low = pooled - half;
-  e.high = pooled + half;
+  set_error(std::sqrt(second * (count - 1.0) / count), left_out.size(), &e);
   e.relative_variance_of_variance = variance_of_variance(second, fourth, count);
   return e;
 }

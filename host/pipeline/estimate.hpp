@@ -19,6 +19,9 @@ double normal_variance_of_variance(int replicates);
 /// A number without a statistical error.
 Estimate exact_number(double value);
 
+/// Gives an estimate of so many replicates a standard error and its interval.
+void set_error(double standard_error, std::size_t replicates, Estimate* estimate);
+
 /// Mean, standard error, interval and relative variance of the variance of the replicates. The number of a single one
 /// is exact.
 Estimate estimate_mean(const std::vector<double>& replicates);
@@ -31,8 +34,10 @@ double error_of_agreement(std::uint64_t replicates);
 /// Whether replicates of this mean and standard error agree: their spread is that of rounding.
 bool agree(double value, double standard_error);
 
-/// estimate_mean() of a total that so many rays of each replicate bring, none too small where the replicates agree.
-Estimate estimate_total(const std::vector<double>& replicates, double rays);
+/// estimate_mean() of a total that so many rays of each replicate bring, none too small where the replicates agree. To
+/// each replicate `solved` is added, which has no error. Where the rays brought nothing, one of them counts as that
+/// over their number: what they may have missed is taken for as bright as what is solved.
+Estimate estimate_total(const std::vector<double>& replicates, double rays, double solved = 0.0);
 
 /// A ratio-like statistic of pooled sums with its jackknife error: `pooled` over all replicates, `left_out[r]` over all
 /// but r.

@@ -44,10 +44,11 @@ const Material* misfit(const Scene& scene, Fits fits) {
 /// What of surfaces and observers stands in the way of a detector's exact numbers; empty: nothing.
 std::string obstacle_to(const Scene& scene, const TableRow& row) {
   if (row.connects) {
-    if (const Material* m = misfit(scene, [](const TableRow& model) { return !model.delta; }))
-      return fmt::format("material {} is a mirror", m->name);
+    if (misfit(scene, [](const TableRow& model) { return model.delta; }) == nullptr)
+      return "every material is a mirror";
   }
   if (row.scatters) {
+    if (scene.trace.max_bounces > 1) return "light is followed over several bounces";
     // The momentum of the light that such surfaces send on is a closed form.
     if (const Material* m = misfit(scene, [](const TableRow& model) { return model.even || model.delta; }))
       return fmt::format("material {} reflects neither evenly nor as a mirror", m->name);
@@ -59,7 +60,6 @@ std::string obstacle_to(const Scene& scene, const TableRow& row) {
 std::string obstacle(const Scene& scene, const DetectorSpec& detector) {
   const TableRow& row = table_row("detector", detector.kind);
   if (!solvable(row)) return detector.kind + " follows light that cannot be solved";
-  if (scene.trace.max_bounces > 1) return "light is followed over several bounces";
   return obstacle_to(scene, row);
 }
 
@@ -70,6 +70,15 @@ std::size_t sights_of(const Scene& scene, const DetectorSpec& detector) {
     return scene.trace.force_bistatic || !at_source(o, scene.source);
   });
   return 1 + static_cast<std::size_t>(elsewhere);
+}
+
+/// What of a detector's light the first bounce does not bring, so that rays must find it; empty: nothing.
+std::string rest(const Scene& scene, const DetectorSpec& detector) {
+  if (!table_row("detector", detector.kind).connects) return {};
+  if (scene.trace.max_bounces > 1) return "further bounces";
+  // Mirrors reach cones alone: rays find which.
+  if (misfit(scene, [](const TableRow& model) { return !model.delta; })) return "mirrors";
+  return {};
 }
 
 /// What solving a body so many times takes, s on one core.
@@ -90,7 +99,7 @@ bool may_need_no_rays(const Scene& scene) {
   return std::all_of(scene.components.begin(), scene.components.end(),
                      [](const Component& c) { return table_row("shape", c.shape).flat; }) &&
          std::all_of(scene.detectors.begin(), scene.detectors.end(),
-                     [&](const DetectorSpec& d) { return obstacle(scene, d).empty(); });
+                     [&](const DetectorSpec& d) { return obstacle(scene, d).empty() && rest(scene, d).empty(); });
 }
 
 MethodChoice choose_method(const Scene& scene, const Geometry& geometry, const DetectorSpec& detector,
@@ -99,10 +108,15 @@ MethodChoice choose_method(const Scene& scene, const Geometry& geometry, const D
   if (t.method == Method::points) return {false, "points are asked for"};
   std::string why = obstacle(scene, detector);
   if (why.empty() && !made_of_polygons(geometry)) why = "a curved shape is in the scene";
+  const std::string sampled = rest(scene, detector);
+  const auto solved = [&](const std::string& because) {
+    return MethodChoice{sampled.empty(), because + (sampled.empty() ? "" : "; rays find " + sampled), !sampled.empty()};
+  };
   if (t.method == Method::exact) {
-    if (t.rays != 0) throw Error(ErrorCode::input, "method = \"exact\" traces no rays: leave rays out", "trace.rays");
     if (!why.empty()) throw Error(ErrorCode::input, "method = \"exact\" is not possible: " + why, "trace.method");
-    return {true, "asked for"};
+    if (t.rays != 0 && sampled.empty())
+      throw Error(ErrorCode::input, "method = \"exact\" traces no rays here: leave rays out", "trace.rays");
+    return solved("asked for");
   }
   if (t.rays != 0) return {false, fmt::format("rays = {} are asked for", t.rays)};
   if (!why.empty()) return {false, why};
@@ -114,7 +128,7 @@ MethodChoice choose_method(const Scene& scene, const Geometry& geometry, const D
     return {false, fmt::format("{} faces in {} views would take much longer than rays; --method exact solves them",
                                geometry.primitives.size(), views)};
   }
-  return {true, "one reflection from flat faces"};
+  return solved("one reflection from flat faces");
 }
 
 }  // namespace clray

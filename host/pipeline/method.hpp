@@ -9,9 +9,11 @@
 
 namespace clray {
 
+/// How a detector's numbers come about.
 struct MethodChoice {
-  bool exact = false;
+  bool exact = false;  ///< all are solved
   std::string why;
+  bool first_exact = false;  ///< not all, but the first bounce is solved: rays find the rest
 };
 
 /// Whether all numbers of a scene may turn out to be exact, so that no trees are needed; only its faces are not asked.

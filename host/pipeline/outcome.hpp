@@ -32,6 +32,9 @@ struct PassOutcome {
 struct Target {
   std::vector<std::vector<double>> components;  ///< [axis][replicate]
   double scale = 0.0;                           ///< what the half-width is compared with; 0: the value itself
+  std::vector<double> solved = {};              ///< [axis] to add to every replicate, without error; empty: nothing
+
+  double solved_of(std::size_t axis) const { return solved.empty() ? 0.0 : solved[axis]; }
 };
 
 /// Every total of a view, in result units.

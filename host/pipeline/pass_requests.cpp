@@ -58,21 +58,30 @@ class Requests {
 
   // Every detector whose rays start at the beam from the scene's own direction: one request for all that want the
   // same lanes, and one for those that take a wide band in parts. What can be solved needs no rays and goes apart.
+  // Rays that leave out the first bounce serve detectors that have it solved, and those that connect nothing.
   void beam() {
     PassRequest r = request("trace");
     for (std::size_t o = 0; o < scene_.observers.size(); ++o) r.observers.push_back(static_cast<int>(o));
-    PassRequest solved = exact(r);
+    PassRequest solved = exact(r), rest = r;
+    rest.first_exact = true;
     PassRequest parts = r, solved_parts = solved;
+    std::vector<MethodChoice> choices(scene_.detectors.size());
+    bool first_exact = false;
+    for (std::size_t d = 0; d < scene_.detectors.size(); ++d) {
+      if (!row(d).beam || is_grid(d)) continue;
+      choices[d] = choose_method(scene_, geometry_, scene_.detectors[d], instants_.size());
+      first_exact = first_exact || choices[d].first_exact;
+    }
     for (std::size_t d = 0; d < scene_.detectors.size(); ++d) {
       if (!row(d).beam || is_grid(d)) continue;
       const bool in_parts = lanes_of(scene_, row(d)).front().share < 1.0;
-      const MethodChoice choice = choose_method(scene_, geometry_, scene_.detectors[d], instants_.size());
-      PassRequest& points = in_parts ? parts : r;
-      add_detector(d, choice, choice.exact ? (in_parts ? solved_parts : solved) : points);
+      const bool joins = choices[d].first_exact || (first_exact && !row(d).connects);
+      PassRequest& points = in_parts ? parts : joins ? rest : r;
+      add_detector(d, choices[d], choices[d].exact ? (in_parts ? solved_parts : solved) : points);
     }
-    parts.apart = !r.detectors.empty() || !solved.detectors.empty();
+    parts.apart = !r.detectors.empty() || !rest.detectors.empty() || !solved.detectors.empty();
     solved_parts.apart = parts.apart;
-    for (const PassRequest& each : {solved, solved_parts, r, parts}) {
+    for (const PassRequest& each : {solved, solved_parts, rest, r, parts}) {
       if (!each.detectors.empty()) add(each, kMostLanes);
     }
   }
@@ -87,7 +96,11 @@ class Requests {
   void add_detector(std::size_t d, const MethodChoice& choice, PassRequest& request) const {
     const DetectorSpec& spec = scene_.detectors[d];
     request.detectors.push_back(static_cast<int>(d));
-    request.method.push_back(shown_name(spec) + (choice.exact ? ", exact: " : ", points: ") + choice.why);
+    request.method.push_back(shown_name(spec) +
+                             (choice.exact         ? ", exact: "
+                              : choice.first_exact ? ", first bounce exact: "
+                                                   : ", points: ") +
+                             choice.why);
   }
 
   void grid(std::size_t d) {

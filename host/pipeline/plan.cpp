@@ -17,7 +17,7 @@ namespace {
 
 PathTraits traits_of(const Scene& scene, const PassRequest& request, const MaterialTable& materials) {
   PathTraits t;
-  t.max_bounces = scene.trace.max_bounces;
+  t.max_bounces = request.exact ? 1 : scene.trace.max_bounces;
   t.components = static_cast<std::uint32_t>(scene.components.size());
   t.connections = static_cast<std::uint32_t>(request.observers.size());
   bool followed = t.max_bounces > 1;
@@ -26,7 +26,7 @@ PathTraits traits_of(const Scene& scene, const PassRequest& request, const Mater
     t.connect = t.connect || row.connects;
     followed = followed || row.scatters;
   }
-  t.scatter = followed || (materials.delta && t.connect);
+  t.scatter = followed || (materials.delta && t.connect && !request.exact);
   return t;
 }
 
@@ -152,6 +152,33 @@ SumLayout layout_of(const PassPlan& plan, std::vector<PassDetector>* detectors) 
   return layout;
 }
 
+/// The exact pass of a request's first bounce, for those of its detectors that have one.
+PassRequest first_bounce_of(const Scene& scene, PassRequest request) {
+  const auto followed = [&](int d) {
+    return !table_row("detector", scene.detectors[static_cast<std::size_t>(d)].kind).connects;
+  };
+  request.detectors.erase(std::remove_if(request.detectors.begin(), request.detectors.end(), followed),
+                          request.detectors.end());
+  request.exact = true;
+  request.first_exact = false;
+  request.replicates = 1;
+  request.phase = "exact";
+  return request;
+}
+
+/// Which block of `first` adds to each block of a plan.
+std::vector<int> added_blocks(const PassPlan& plan, const PassPlan& first) {
+  std::vector<int> blocks(plan.layout.blocks.size(), -1);
+  for (const PassDetector& d : plan.detectors) {
+    for (const PassDetector& f : first.detectors) {
+      if (f.row != d.row || f.index != d.index) continue;
+      for (std::uint32_t b = d.first_block; b < d.last_block; ++b)
+        blocks[b] = static_cast<int>(f.first_block + (b - d.first_block));
+    }
+  }
+  return blocks;
+}
+
 std::optional<PathBins> path_bins_of(const std::vector<PassDetector>& detectors) {
   for (const PassDetector& detector : detectors) {
     const auto bins = room_of(detector).path_bins;
@@ -194,12 +221,20 @@ PassPlan plan_pass(const Scene& scene, const Geometry& geometry, PassRequest req
   if (plan.request.exact) {
     for (const Orientation& view : plan.request.orientations) plan.motions.push_back(motions_of(scene, geometry, view));
   } else {
-    plan.beams = stratified(
-        std::move(plan.beams), scene, geometry, plan.request,
-        {plan.materials, plan.request.lanes.size(), plan.traits.connect, plan.paths, path_bins_of(plan.detectors)});
+    // Where the first bounce is solved, rays serve later ones, whose delays strata do not foresee.
+    const bool first = !plan.request.first_exact;
+    const auto by = !plan.traits.connect ? Steering::By::area : first ? Steering::By::direct : Steering::By::exchange;
+    plan.beams = stratified(std::move(plan.beams), scene, geometry, plan.request,
+                            {plan.materials, plan.request.lanes.size(), by, plan.paths,
+                             first ? path_bins_of(plan.detectors) : std::nullopt});
   }
   plan.constants = constants_of(scene, plan);
   plan.program = specialise(scene, geometry, plan);
+  if (plan.request.first_exact) {
+    plan.first = std::make_shared<FirstBounce>();
+    plan.first->plan = plan_pass(scene, geometry, first_bounce_of(scene, plan.request), reflectances);
+    plan.first->blocks = added_blocks(plan, plan.first->plan);
+  }
   return plan;
 }
 

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,6 +28,7 @@ struct PassRequest : BeamRequest {
   bool grid = false;                ///< the views are a grid of light directions of a detector's own
   bool apart = false;               ///< it is traced under light of its own, beside others under the scene's
   bool exact = false;               ///< visibility is solved: no rays, one replicate
+  bool first_exact = false;         ///< that of the first bounce alone; rays find the rest
   std::vector<std::string> method;  ///< why its detectors are solved or sampled
   std::uint32_t replicates = 16;
 };
@@ -65,6 +67,8 @@ struct Specialised {
   std::vector<std::string> kept, left_out;
 };
 
+struct FirstBounce;
+
 struct PassPlan {
   PassRequest request;
   PathTraits traits;
@@ -77,6 +81,15 @@ struct PassPlan {
   SumLayout layout;
   ClrayPass constants{};
   Specialised program;
+  std::shared_ptr<FirstBounce> first;  ///< of a pass whose first bounce is solved; else none
+};
+
+/// The first bounce of a pass, solved: an exact pass of the same views, lanes and connections, and what it found. Rays
+/// leave out the light that their first hits send to observers; readers of sums add it (sum_reader.hpp).
+struct FirstBounce {
+  PassPlan plan;
+  Sums sums;                ///< empty until it is solved
+  std::vector<int> blocks;  ///< of each block of the pass: the block that adds to it, or -1
 };
 
 /// All passes of a scene. Throws Error(input) for what cannot be traced.

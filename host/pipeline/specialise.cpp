@@ -24,6 +24,10 @@ class Specialiser {
   Specialised run() {
     out_.kept = plan_.request.method;
     if (plan_.request.exact) return exact();
+    if (plan_.request.first_exact) {
+      out_.kept.push_back("faces, tiles and their visible parts: the first bounce is solved");
+      out_.left_out.push_back("connections of first hits: the first bounce is solved, rays find the rest");
+    }
     tables();
     detectors();
     rays();
@@ -174,6 +178,7 @@ class Specialiser {
   void sizes() {
     define("CLRAY_PIXELS", plan_.request.pixels ? 1 : 0);
     define("CLRAY_MIRRORS_FIRST", plan_.request.mirrors ? 1 : 0);
+    define("CLRAY_SKIP_FIRST", plan_.request.mirrors || plan_.request.first_exact ? 1 : 0);
     define("CLRAY_CONNECT", plan_.traits.connect ? 1 : 0);
     define("CLRAY_SOBOL", scene_.trace.sobol ? 1 : 0);
     define("CLRAY_LANES", plan_.request.lanes.size());

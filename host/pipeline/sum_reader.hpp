@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The integer sums of a pass, read in the units of its results: what a ray of share 1 stands for times the sum, m² for
-// shares of the beam and m²/sr for weights toward a connection.
+// shares of the beam and m²/sr for weights toward a connection. Where a pass's first bounce is solved, its part is
+// added here, as a number that is the same in every replicate.
 #pragma once
 
 #include <vector>
@@ -33,8 +34,14 @@ class SumReader {
                       std::uint64_t k) const {
     return sums_.counts[at(plan_.layout.blocks[block], view, lane, c, r) + k];
   }
-  /// Of an exact pass: a bound of the rounding of A, m²/sr.
+  /// What the solved first bounce adds to a value in every replicate; 0 where none is solved.
+  double solved(std::uint32_t block, std::size_t view, std::size_t lane, std::size_t c, std::uint64_t k) const {
+    if (!plan_.first || plan_.first->blocks[block] < 0) return 0.0;
+    return first().value(static_cast<std::uint32_t>(plan_.first->blocks[block]), view, lane, c, 0, k);
+  }
+  /// Of an exact pass, or of a solved first bounce: a bound of the rounding of A, m²/sr.
   double rounding(std::size_t view, std::size_t lane, std::size_t c) const {
+    if (plan_.first) return first().rounding(view, lane, c);
     const SumShape& shape = plan_.layout.shape;
     return sums_.rounding[(view * shape.lanes + lane) * shape.connections + c];
   }
@@ -46,6 +53,8 @@ class SumReader {
   }
 
  private:
+  SumReader first() const { return {plan_.first->plan, plan_.first->sums}; }
+
   std::uint64_t at(const SumBlock& b, std::size_t view, std::size_t lane, std::size_t c, std::uint32_t r) const {
     const SumShape& shape = plan_.layout.shape;
     std::uint64_t row = view;

@@ -15,10 +15,12 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 /// order.
 double error_of_length(const Target& target, const std::vector<double>& means, double length, double rays) {
   std::vector<double> along(target.components.front().size());
-  for (std::size_t r = 0; r < along.size(); ++r) {
-    for (std::size_t k = 0; k < means.size(); ++k) along[r] += target.components[k][r] * (means[k] / length);
+  double solved = 0.0;
+  for (std::size_t k = 0; k < means.size(); ++k) {
+    for (std::size_t r = 0; r < along.size(); ++r) along[r] += target.components[k][r] * (means[k] / length);
+    solved += target.solved_of(k) * (means[k] / length);
   }
-  return estimate_total(along, rays).standard_error;
+  return estimate_total(along, rays, solved).standard_error;
 }
 
 }  // namespace
@@ -28,8 +30,8 @@ void largest_error(const std::vector<Target>& targets, double rays, ErrorPoint* 
   for (std::size_t t = 0; t < targets.size(); ++t) {
     double value = 0.0, error = 0.0;
     std::vector<double> means;
-    for (const auto& axis : targets[t].components) {
-      const Estimate e = estimate_total(axis, rays);
+    for (std::size_t axis = 0; axis < targets[t].components.size(); ++axis) {
+      const Estimate e = estimate_total(targets[t].components[axis], rays, targets[t].solved_of(axis));
       means.push_back(e.value);
       value += e.value * e.value;
       error += e.standard_error * e.standard_error;

@@ -49,22 +49,36 @@ Geometry geometry_of(const Scene& scene, std::vector<PassRequest>* requests) {
   return rays && !geometry.trees ? build_geometry(scene) : geometry;
 }
 
-/// Traces or solves a pass. Adds to the seconds spent compiling and tracing.
+/// Solves a pass. Adds to the seconds spent compiling and tracing.
+PassOutcome solved(const Scene& scene, Device& device, const PassPlan& plan, const Geometry& geometry,
+                   const TraceHooks& hooks, double time_left_s, double* compiling, double* tracing) {
+  ExactPass pass(device, plan, geometry);
+  *compiling += pass.compile_seconds();
+  const double begin = now();
+  PassOutcome outcome = solve_pass(pass, scene.trace, hooks, time_left_s);
+  *tracing += now() - begin;
+  return outcome;
+}
+
+/// Traces or solves a pass, or solves its first bounce and traces the rest. Adds to the seconds spent compiling and
+/// tracing.
 PassOutcome outcome_of(const Scene& scene, Device& device, const PassPlan& plan, const Geometry& geometry,
                        const TraceHooks& hooks, double time_left_s, double* compiling, double* tracing) {
-  if (plan.request.exact) {
-    ExactPass pass(device, plan, geometry);
-    *compiling += pass.compile_seconds();
-    const double begin = now();
-    PassOutcome outcome = solve_pass(pass, scene.trace, hooks, time_left_s);
-    *tracing += now() - begin;
-    return outcome;
+  if (plan.request.exact) return solved(scene, device, plan, geometry, hooks, time_left_s, compiling, tracing);
+  double solving = 0.0;
+  if (plan.first) {
+    PassOutcome first = solved(scene, device, plan.first->plan, geometry, hooks, time_left_s, compiling, &solving);
+    *tracing += solving;
+    if (first.sums.empty()) return first;
+    plan.first->sums = std::move(first.sums);
+    if (time_left_s > 0.0) time_left_s = std::max(1e-6, time_left_s - solving);
   }
   PassRunner runner(device, plan, geometry, scene.trace);
   *compiling += runner.compile_seconds();
   const double begin = now();
   PassOutcome outcome = drive_pass(geometry, plan, runner, scene.trace, hooks, time_left_s);
   *tracing += now() - begin;
+  for (ErrorPoint& point : outcome.errors) point.seconds += solving;
   return outcome;
 }
 

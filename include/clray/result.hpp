@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <glm/vec3.hpp>
@@ -26,10 +27,14 @@ struct Estimate {
   /// How well the squared standard error is known: 0.10 on average for 16 normal replicates, at most 0.82, when one
   /// replicate differs from all others. NaN without any spread.
   double relative_variance_of_variance = 0.0;
-  /// Of an exact number (docs/exact.md): a bound of its rounding error, in its unit. NaN for an estimate from rays.
+  /// Of an exact number, or of its exact part (docs/exact.md): a bound of the rounding error, in its unit. NaN for an
+  /// estimate from rays alone.
   double rounding_bound = std::numeric_limits<double>::quiet_NaN();
+  /// Of a number whose first bounce alone is solved: that part of the value, which has no standard error. Else NaN.
+  double exact_part = std::numeric_limits<double>::quiet_NaN();
 
-  bool exact() const { return rounding_bound >= 0.0; }
+  bool exact() const { return rounding_bound >= 0.0 && std::isnan(exact_part); }
+  bool partly_exact() const { return !std::isnan(exact_part); }
 };
 
 /// A vector with a standard error per component.

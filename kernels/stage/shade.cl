@@ -29,9 +29,10 @@ CLRAY_FN i32 shade(const Buffers* g, const Surface* surface, const Path* path, u
   return 1;
 }
 
-/// The stage: records the light that each connection receives from a surface.
+/// The stage: records the light that each connection receives from a surface. Of the first one it is left out where it
+/// counts elsewhere: by rays from pixels, or solved (docs/exact.md).
 static void stage_shade(const Buffers* g, Tally* tally, u32 bounce, const Surface* surface, const Path* path) {
-  if (CLRAY_MIRRORS_FIRST && bounce == 0u) return;
+  if (CLRAY_SKIP_FIRST && bounce == 0u) return;
   for (u32 c = 0; CLRAY_CONNECT && c < CLRAY_CONNECTIONS; ++c) {
     const __global ClrayConnection* connection = connection_of(g, tally, c);
     Light weights;

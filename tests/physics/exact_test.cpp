@@ -17,9 +17,6 @@ TEST_CASE("box, rectangle and hinged shapes count as polygons, curved shapes do 
               convex_lambert(*box_mesh(1.0, 2.0, 3.0), 0.6, toward(0.9, 0.5), toward(0.9, 0.5)).total_m2_per_sr);
   clray::Scene sphere = scene_of("sphere", {{"radius", 1.0}}, lambert(0.5));
   CHECK_THROWS_WITH_AS(solve(sphere), doctest::Contains("curved shape"), clray::Error);
-  clray::Scene bounces = lambert_scene(box_mesh(1, 1, 1), toward(0.4));
-  bounces.trace.max_bounces = 2;
-  CHECK_THROWS_WITH_AS(solve(bounces), doctest::Contains("several bounces"), clray::Error);
   clray::Scene rayed = lambert_scene(box_mesh(1, 1, 1), toward(0.4));
   rayed.trace.method = clray::Method::exact;
   CHECK_THROWS_WITH_AS(run(rayed), doctest::Contains("rays"), clray::Error);

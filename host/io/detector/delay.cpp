@@ -55,6 +55,10 @@ void delay_table(Writer& writer, const Group& group, const std::string& stem) {
                              : " with standard error " + number(a.standard_error)) +
                   ", of which below the first bin " + number(delay.below_m2_per_sr) + " and above the last " +
                   number(delay.above_m2_per_sr));
+    if (a.partly_exact()) {
+      table.comment("first bounce: " + number(a.exact_part) + ", exact but for rounding below " +
+                    number(a.rounding_bound) + "; standard_error and hits are of the light that rays found");
+    }
   }
   table.comment("resolved: 0 where a bin was hit too seldom for its error to be trusted; it gets a 95 % upper_bound");
   std::vector<std::string> columns{"delay_ns",   "intensity_m2_per_sr_per_ns", "standard_error", "hits", "resolved",
@@ -155,7 +159,7 @@ Json delay_entry(const DelayResult& delay) {
   const auto& a = delay.intensity_m2_per_sr;
   std::size_t unresolved = 0;
   for (const auto resolved : delay.resolved) unresolved += !resolved;
-  Json entry = method_of(a.rounding_bound);
+  Json entry = method_of(a);
   entry.update({{"intensity_m2_per_sr", a.value},
                 {"standard_error", a.standard_error},
                 {"confidence_95", {a.low, a.high}},

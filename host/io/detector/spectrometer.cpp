@@ -90,7 +90,7 @@ void write_spectrometer(Writer& writer) {
 }
 
 Json spectrometer_entry(const SpectrometerResult& record) {
-  Json entry = method_of(record.intensity_m2_per_sr.rounding_bound);
+  Json entry = method_of(record.intensity_m2_per_sr);
   entry.update({{"low_nm", record.band.low_nm},
                 {"high_nm", record.band.high_nm},
                 {"intensity_m2_per_sr", record.intensity_m2_per_sr.value},

@@ -54,7 +54,7 @@ std::string amount_with_interval(const Estimate& e, const std::string& unit) {
   const std::string percent =
       has_value ? fmt::format("{:.2g} %", 100.0 * 0.5 * (e.high - e.low) / std::fabs(e.value)) : "n/a";
   if (e.exact()) return fmt::format("{}   (exact, rounding below {:.1g})", amount(e, 1.0, unit), e.rounding_bound);
-  return amount(e, 1.0, unit) + "   (95 %: ±" + percent + ")";
+  return amount(e, 1.0, unit) + "   (95 %: ±" + percent + (e.partly_exact() ? "; first bounce exact)" : ")");
 }
 
 }  // namespace clray::io

@@ -67,7 +67,7 @@ std::optional<PathBins> delay_path_bins(const std::vector<double>& settings) {
 void delay_moments(const PassPlan& plan, const SumReader& read, std::size_t v, std::size_t l, std::size_t c,
                    DelayResult* out) {
   double pooled[3] = {};
-  for (int k = 0; k < 3; ++k) {
+  for (std::uint64_t k = 0; k < 3; ++k) {
     for (std::uint32_t r = 0; r < plan.request.replicates; ++r)
       pooled[k] += intensity_moment(plan, read, v, l, c, r, k);
   }
@@ -82,12 +82,18 @@ void delay_moments(const PassPlan& plan, const SumReader& read, std::size_t v, s
   std::vector<double> means, widths;
   for (std::uint32_t r = 0; r < plan.request.replicates; ++r) {
     double rest[3];
-    for (int k = 0; k < 3; ++k) rest[k] = pooled[k] - intensity_moment(plan, read, v, l, c, r, k);
+    for (std::uint64_t k = 0; k < 3; ++k) rest[k] = pooled[k] - intensity_moment(plan, read, v, l, c, r, k);
     means.push_back(mean_of(rest));
     widths.push_back(width_of(rest));
   }
   out->mean_delay_s = estimate_jackknife(mean_of(pooled), means);
   out->rms_width_s = estimate_jackknife(width_of(pooled), widths);
+  const Estimate& a = out->intensity_m2_per_sr;
+  if (a.value == a.exact_part) {
+    // Rays that brought no light show no spread. What they may have missed may come at any delay.
+    for (Estimate* e : {&out->mean_delay_s, &out->rms_width_s})
+      set_error(a.standard_error / a.value * to_s, plan.request.replicates, e);
+  }
   if (!plan.request.exact) return;
   // Moments of tau, within [-1, 1], are off by no more than A is: d(m1/m0) <= 2 dA/A, and the variance by three times
   // that.
@@ -107,44 +113,85 @@ double largest_weight(const RoomResults& x, std::size_t v, std::size_t l, std::s
   return largest;
 }
 
-void delay_bins(const RoomResults& x, std::size_t v, std::size_t l, std::size_t c, DelayResult* out) {
+/// What rays found in a bin.
+struct BinSample {
+  double mean = 0.0, spread = 0.0;  // of the replicates, m²/sr; the standard error that they show
+  std::uint64_t hits = 0;
+  std::uint32_t replicates_hit = 0;
+};
+
+BinSample bin_sample(const RoomResults& x, std::size_t v, std::size_t l, std::size_t c, std::uint64_t b) {
   const std::uint32_t replicates = x.plan.request.replicates;
-  const double count = replicates, largest = largest_weight(x, v, l, c), share = x.read.share(v) / count;
-  const std::uint64_t bins = x.plan.layout.blocks[x.detector.first_block + kBins].width - 2;
-  const bool exact = x.plan.request.exact;
-  const auto sum = [&](std::uint32_t r, std::uint64_t b) {
-    return x.read.value(x.detector.first_block + kBins, v, l, c, r, b);
-  };
+  const double count = replicates;
+  const auto sum = [&](std::uint32_t r) { return x.read.value(x.detector.first_block + kBins, v, l, c, r, b); };
+  BinSample s;
+  double squares = 0.0;
+  for (std::uint32_t r = 0; r < replicates; ++r) {
+    s.mean += sum(r);
+    const std::uint64_t h = x.read.count(x.detector.first_block + kHits, v, l, c, r, b);
+    s.hits += h;
+    s.replicates_hit += h != 0;
+  }
+  s.mean /= count;
+  if (x.plan.request.exact) return s;
+  for (std::uint32_t r = 0; r < replicates; ++r) squares += (sum(r) - s.mean) * (sum(r) - s.mean);
+  s.spread = std::sqrt(squares / (count * (count - 1.0)));
+  if (agree(s.mean, s.spread))
+    s.spread = s.hits == 0 ? 0.0 : error_of_agreement(replicates) * s.mean * count / static_cast<double>(s.hits);
+  return s;
+}
+
+/// What the hits of a record bring, m²/sr each: on average, and the most.
+struct HitSizes {
+  double mean = 0.0, largest = 0.0;
+};
+
+HitSizes hit_sizes(const RoomResults& x, std::size_t v, std::size_t l, std::size_t c) {
+  const double replicates = x.plan.request.replicates;
+  const std::uint64_t hits = hits_of(x.plan, x.read, v, l, c);
+  if (hits == 0 && x.plan.first) {
+    // Rays found nothing beside the solved part: what they may have missed is taken for as bright as that.
+    const double of_ray =
+        solved_intensity(x.plan, x.read, v, l, c) / (static_cast<double>(x.read.points(v)) * replicates);
+    return {of_ray, of_ray};
+  }
+  const double all = estimate_mean(intensities(x.plan, x.read, v, l, c)).value;
+  return {hits == 0 ? 0.0 : all / static_cast<double>(hits),
+          largest_weight(x, v, l, c) * (x.read.share(v) / replicates)};
+}
+
+/// A bin: what is solved, and what rays found beside it.
+void add_bin(const RoomResults& x, double solved, const BinSample& s, const HitSizes& hit, DelayResult* out) {
+  const std::uint32_t replicates = x.plan.request.replicates;
+  const double value = s.mean + solved, most = poisson_upper95(s.hits);
+  double error = s.spread;
+  bool resolved = x.plan.request.exact || (s.hits >= 10 && 2 * s.replicates_hit >= replicates);
+  if (!resolved && x.plan.first) {
+    // Few hits show no error to be trusted. At 95 % no more than `most` were due, each of the mean size. A bin that is
+    // known as well as ten hits know it, since most of it is solved, is resolved.
+    const double missed = most - static_cast<double>(s.hits);
+    error = std::max(error, missed * hit.mean / student_t95(static_cast<int>(replicates) - 1));
+    resolved = error <= std::sqrt(0.1) * value;
+  }
+  out->bin_m2_per_sr.push_back(value);
+  out->bin_standard_error.push_back(error);
+  if (!x.plan.request.exact) out->hits.push_back(s.hits);
+  out->resolved.push_back(resolved);
+  out->bin_upper_bound.push_back(resolved ? 0.0 : solved + hit.largest * most);
+}
+
+void delay_bins(const RoomResults& x, std::size_t v, std::size_t l, std::size_t c, DelayResult* out) {
+  const std::uint32_t block = x.detector.first_block + kBins;
+  const std::uint64_t bins = x.plan.layout.blocks[block].width - 2;
+  const auto solved = [&](std::uint64_t b) { return x.read.solved(block, v, l, c, b); };
+  const HitSizes hit = hit_sizes(x, v, l, c);
   for (std::vector<double>* numbers : {&out->bin_m2_per_sr, &out->bin_standard_error, &out->bin_upper_bound})
     numbers->reserve(bins);
   out->hits.reserve(bins);
   out->resolved.reserve(bins);
-  for (std::uint64_t b = 1; b <= bins; ++b) {
-    double mean = 0.0, squares = 0.0;
-    std::uint64_t hits = 0;
-    std::uint32_t replicates_hit = 0;
-    for (std::uint32_t r = 0; r < replicates; ++r) {
-      mean += sum(r, b);
-      const std::uint64_t h = x.read.count(x.detector.first_block + kHits, v, l, c, r, b);
-      hits += h;
-      replicates_hit += h != 0;
-    }
-    mean /= count;
-    for (std::uint32_t r = 0; r < replicates; ++r) squares += (sum(r, b) - mean) * (sum(r, b) - mean);
-    const bool resolved = exact || (hits >= 10 && 2 * replicates_hit >= replicates);
-    out->bin_m2_per_sr.push_back(mean);
-    const double spread = exact ? 0.0 : std::sqrt(squares / (count * (count - 1.0)));
-    const double of_hit =
-        exact || hits == 0 ? 0.0 : error_of_agreement(replicates) * mean * count / static_cast<double>(hits);
-    out->bin_standard_error.push_back(!exact && agree(mean, spread) ? of_hit : spread);
-    if (!exact) out->hits.push_back(hits);
-    out->resolved.push_back(resolved);
-    out->bin_upper_bound.push_back(resolved ? 0.0 : largest * poisson_upper95(hits) * share);
-  }
-  for (std::uint32_t r = 0; r < replicates; ++r) {
-    out->below_m2_per_sr += sum(r, 0) / count;
-    out->above_m2_per_sr += sum(r, bins + 1) / count;
-  }
+  for (std::uint64_t b = 1; b <= bins; ++b) add_bin(x, solved(b), bin_sample(x, v, l, c, b), hit, out);
+  out->below_m2_per_sr = bin_sample(x, v, l, c, 0).mean + solved(0);
+  out->above_m2_per_sr = bin_sample(x, v, l, c, bins + 1).mean + solved(bins + 1);
 }
 
 void delay_record(const RoomResults& x, std::size_t v, std::size_t l, std::size_t c) {
@@ -224,6 +271,7 @@ void intensity_targets(const TargetContext& x, std::vector<Target>* targets) {
     for (std::size_t c = 0; c < shape.connections; ++c) {
       Target t;
       t.components.push_back(intensities(x.plan, x.read, x.view, l, c));
+      t.solved.push_back(solved_intensity(x.plan, x.read, x.view, l, c));
       targets->push_back(std::move(t));
     }
   }

@@ -9,14 +9,34 @@ namespace clray {
 
 /// Moment k (of w, w·tau, w·tau²) of replicate r, m²/sr; the pass has connections.
 inline double intensity_moment(const PassPlan& plan, const SumReader& read, std::size_t v, std::size_t l, std::size_t c,
-                               std::uint32_t r, int k) {
-  return read.value(find_detector(plan, "intensity")->first_block, v, l, c, r, static_cast<std::uint64_t>(k));
+                               std::uint32_t r, std::uint64_t k) {
+  const std::uint32_t block = find_detector(plan, "intensity")->first_block;
+  return read.value(block, v, l, c, r, k) + read.solved(block, v, l, c, k);
 }
 
-/// A per replicate, m²/sr.
+/// A per replicate, m²/sr, as far as rays find it.
 inline std::vector<double> intensities(const PassPlan& plan, const SumReader& read, std::size_t v, std::size_t l,
                                        std::size_t c) {
-  return per_replicate(plan, [&](std::uint32_t r) { return intensity_moment(plan, read, v, l, c, r, 0); });
+  const std::uint32_t block = find_detector(plan, "intensity")->first_block;
+  return per_replicate(plan, [&](std::uint32_t r) { return read.value(block, v, l, c, r, 0); });
+}
+
+/// What a solved first bounce adds to each of them.
+inline double solved_intensity(const PassPlan& plan, const SumReader& read, std::size_t v, std::size_t l,
+                               std::size_t c) {
+  return read.solved(find_detector(plan, "intensity")->first_block, v, l, c, 0);
+}
+
+/// Rays of all replicates together that brought light, as the delay histogram counted them; none without one.
+inline std::uint64_t hits_of(const PassPlan& plan, const SumReader& read, std::size_t v, std::size_t l, std::size_t c) {
+  const PassDetector* delay = find_detector(plan, "delay");
+  if (delay == nullptr) return 0;
+  const std::uint32_t hits = delay->last_block - 1;
+  std::uint64_t sum = 0;
+  for (std::uint32_t r = 0; r < plan.request.replicates; ++r) {
+    for (std::uint64_t b = 0; b < plan.layout.blocks[hits].width; ++b) sum += read.count(hits, v, l, c, r, b);
+  }
+  return sum;
 }
 
 /// A with its error. The rays that bring it are those that the delay histogram counted, where there is one.
@@ -27,16 +47,15 @@ inline Estimate intensity_estimate(const PassPlan& plan, const SumReader& read, 
     exact.rounding_bound = read.rounding(v, l, c);
     return exact;
   }
-  double rays = rays_of(read, v);
-  if (const PassDetector* delay = find_detector(plan, "delay")) {
-    const std::uint32_t hits = delay->last_block - 1;
-    std::uint64_t sum = 0;
-    for (std::uint32_t r = 0; r < plan.request.replicates; ++r) {
-      for (std::uint64_t b = 0; b < plan.layout.blocks[hits].width; ++b) sum += read.count(hits, v, l, c, r, b);
-    }
-    rays = static_cast<double>(sum) / plan.request.replicates;
+  const std::uint64_t hits = hits_of(plan, read, v, l, c);
+  const double rays = hits != 0 ? static_cast<double>(hits) / plan.request.replicates : rays_of(read, v);
+  const double solved = solved_intensity(plan, read, v, l, c);
+  Estimate e = estimate_total(intensities(plan, read, v, l, c), rays, solved);
+  if (plan.first) {
+    e.exact_part = solved;
+    e.rounding_bound = read.rounding(v, l, c);
   }
-  return estimate_total(intensities(plan, read, v, l, c), rays);
+  return e;
 }
 
 }  // namespace clray
