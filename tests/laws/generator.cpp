@@ -208,8 +208,9 @@ void draw_variants(Draw& draw, const Frame& frame, Scene* scene) {
 
 }  // namespace
 
-RandomScene draw_scene(std::uint64_t seed, int frames) {
+RandomScene draw_scene(std::uint64_t seed, int frames, bool flat) {
   RandomScene out;
+  out.flat = flat;
   Draw draw(seed);
   out.seed = seed;
   out.frame = static_cast<int>(seed % static_cast<std::uint64_t>(frames));

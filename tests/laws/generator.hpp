@@ -26,6 +26,7 @@ struct RandomScene {
   clray::Scene scene;
   /// Components 1 and 2 are sheets in one place that look opposite ways.
   bool coincident = false;
+  bool flat = false;  ///< only shapes of flat faces, so that single scattering can be solved
 };
 
 /// The orbit of scenes with a pass: a body over the Sun's side of the Earth, which no shadow reaches.
@@ -36,7 +37,7 @@ constexpr const char* kOrbitStates =
 constexpr int kComponents = 3, kMaterials = 4;  // of every scene
 
 /// The scene of this seed: one of `frames` frames and a scene of it.
-RandomScene draw_scene(std::uint64_t seed, int frames);
+RandomScene draw_scene(std::uint64_t seed, int frames, bool flat = false);
 
 clray::Material draw_material(Draw& draw, const std::string& name, const std::vector<clray::Band>& bands);
 /// Whether a model's reflection is a delta, which no connection meets: it reflects, but sends nothing anywhere.

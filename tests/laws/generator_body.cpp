@@ -90,8 +90,11 @@ void set_mesh(Draw& draw, std::shared_ptr<const Mesh> mesh, Component* c) {
   for (std::size_t s = 0; s < c->mesh->material_slots.size(); ++s) c->materials.push_back(draw_material_index(draw));
 }
 
-Component draw_component(Draw& draw, int number) {
-  const std::vector<TableRow>& rows = clray::table("shape");
+Component draw_component(Draw& draw, int number, bool flat) {
+  std::vector<TableRow> rows;
+  for (const TableRow& row : clray::table("shape")) {
+    if (row.flat || !flat) rows.push_back(row);
+  }
   Component c;
   c.name = fmt::format("c{}", number);
   const TableRow& row = draw.of(rows);
@@ -231,7 +234,7 @@ std::shared_ptr<const Mesh> reversed(const Mesh& mesh) {
 
 void draw_components(Draw& draw, RandomScene* out) {
   Scene& scene = out->scene;
-  for (int c = 0; c < kComponents; ++c) scene.components.push_back(draw_component(draw, c));
+  for (int c = 0; c < kComponents; ++c) scene.components.push_back(draw_component(draw, c, out->flat));
   out->coincident = draw.chance(0.3);
   if (out->coincident) put_back_to_back(draw, &scene.components[1], &scene.components[2]);
 }

@@ -27,11 +27,6 @@ constexpr double kAlarm = 0.05;       // of a trial, by chance, that is run agai
 constexpr double kFalseAlarm = 0.01;  // of all trials together, that any fails by chance
 constexpr double kTrialsOfScene = 7.0;
 
-Result run_with(Scene scene, int log2_rays, std::uint64_t seed) {
-  rays(scene, log2_rays, seed);
-  return run(scene);
-}
-
 constexpr std::size_t kMostLines = 8;  // of records that deviate
 
 std::string folder_of(const std::string& name) {
@@ -52,17 +47,21 @@ std::string lines_of(const std::vector<std::string>& found) {
 
 /// Equal bits; but the force on the body is that on its parts, added in their order, and angles and windows are worked
 /// out from positions: 1e-13 of the scale is a few roundings.
-bool same_bits(const Comparison& c) {
+bool same_bits(const Comparison& c, bool solved) {
   if (std::isnan(c.first.value) && std::isnan(c.second.value)) return true;
   const std::string& kind = c.second.kind;
   const bool added = kind == "force" || kind == "torque" || kind == "window" || kind == "exact" || kind == "balance";
-  const double slack = added ? 1e-13 * std::max(std::fabs(c.first.scale), std::fabs(c.first.value)) : 0.0;
+  // Exact numbers are sums over pieces that another view or other faces cut elsewhere.
+  const double slack = (solved  ? 1e-11
+                        : added ? 1e-13
+                                : 0.0) *
+                       std::max(std::fabs(c.first.scale), std::fabs(c.first.value));
   return std::fabs(c.first.value - c.second.value) <= slack && std::fabs(c.first.error - c.second.error) <= slack;
 }
 
 /// Warnings that speak of a run's rays and not of its scene.
 bool of_sampling(const std::string& warning) {
-  return warning.find("claimed error") != std::string::npos;
+  return warning.find("claimed error") != std::string::npos || warning.find("target error") != std::string::npos;
 }
 
 std::set<std::string> kinds_of(const Result& result) {
@@ -178,6 +177,22 @@ int law_frames() {
   return law_scenes() > 100 ? 40 : 6;
 }
 
+Result LawHarness::run_with(Scene scene, int log2_rays, std::uint64_t seed) const {
+  rays(scene, log2_rays, seed);
+  if (solved_) {
+    // Rays that are asked for ask for points. A target that nobody meets takes as many.
+    scene.trace.method = clray::Method::automatic;
+    scene.trace.rays = 0;
+    scene.trace.target_error_percent = 1e-9;
+    scene.trace.max_rays = std::uint64_t{1} << log2_rays;
+  }
+  const Result result = clray_test::run(scene);
+  const auto count = [&](const clray::Estimate& a) { ++methods_[a.exact() ? 2 : a.partly_exact() ? 1 : 0]; };
+  for (const auto& d : result.delay) count(d.intensity_m2_per_sr);
+  for (const auto& s : result.spectrometer) count(s.intensity_m2_per_sr);
+  return result;
+}
+
 double LawHarness::trials() const {
   return kTrialsOfScene * scenes_;
 }
@@ -236,7 +251,7 @@ void LawHarness::run_trial(const RandomScene& random, const Trial& trial, const 
   if (trial.same_bits) {
     std::vector<std::string> found;
     for (const Comparison& c : all) {
-      if (!same_bits(c)) found.push_back(text_of(c) + ", and must be of equal bits");
+      if (!same_bits(c, solved_)) found.push_back(text_of(c) + ", and must be of equal bits");
     }
     if (!found.empty()) fail(random, &trial, lines_of(found));
     return;
@@ -251,7 +266,7 @@ void LawHarness::run_trial(const RandomScene& random, const Trial& trial, const 
 }
 
 void LawHarness::run_scene(std::uint64_t seed) {
-  const RandomScene random = draw_scene(seed, frames_);
+  const RandomScene random = draw_scene(seed, frames_, solved_);
   of_scene_.clear();
   Result combined;
   try {
@@ -280,7 +295,7 @@ std::vector<std::string> LawHarness::run() {
   if (const char* asked = std::getenv("CLRAY_LAWS_SEED")) {
     const std::uint64_t seed = std::strtoull(asked, nullptr, 10);
     const std::string folder = folder_of(std::to_string(seed));
-    write_scene(draw_scene(seed, frames_).scene, folder);
+    write_scene(draw_scene(seed, frames_, solved_).scene, folder);
     fmt::print("the scene of seed {} is {}/scene.toml\n", seed, folder);
     run_scene(seed);
   } else {

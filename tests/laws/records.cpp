@@ -92,10 +92,10 @@ class Flattener {
     add(at + "window start", "window", d.first_bin_start_s, 0.0, width);
     add(at + "window width", "window", width, 0.0, width);
     for (std::size_t b = 0; b < d.bin_m2_per_sr.size(); ++b) {
-      // A bin has no relative variance of the variance; 100 hits make its spread nearly normal.
+      // A bin has no relative variance of the variance; 100 hits make its spread nearly normal. An exact one has none.
       const std::string name = fmt::format("{}bin {}", at, b);
       const double low = d.first_bin_start_s + static_cast<double>(b) * d.bin_width_s, high = low + d.bin_width_s;
-      add(name, "bin", d.bin_m2_per_sr[b], d.bin_standard_error[b], area_, 0.0, d.hits[b] >= 100);
+      add(name, "bin", d.bin_m2_per_sr[b], d.bin_standard_error[b], area_, 0.0, d.hits.empty() || d.hits[b] >= 100);
       records_[name].low = low;
       records_[name].high = high;
     }
