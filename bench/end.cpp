@@ -30,7 +30,7 @@ struct Measured {
 struct Curve {
   std::string method;
   bool ends = false;
-  double prepared_s = 0.0;
+  std::vector<double> prepared_s;
   std::vector<Measured> at;
 };
 
@@ -68,7 +68,7 @@ void take(const EndMethod& method, const Answer& exact, int effort, std::uint64_
   m.seconds.push_back(found.seconds);
   m.total.push_back(std::fabs(found.total / exact.total - 1.0));
   m.bins.push_back(bin_error(found, exact));
-  curve->prepared_s = found.prepared_s;
+  curve->prepared_s.push_back(found.prepared_s);
 }
 
 /// Methods in turn, at every effort and seed.
@@ -77,7 +77,7 @@ std::vector<Curve> measure(const std::vector<EndMethod>& methods, const Answer& 
   std::size_t most = 0;
   for (const EndMethod& m : methods) {
     m.run(m.efforts.front(), 1);  // the first run of a program finishes its compilation
-    curves.push_back({m.name, m.ends, 0.0, {}});
+    curves.push_back({m.name, m.ends, {}, {}});
     most = std::max(most, m.efforts.size());
   }
   // What always gives the same answer runs among all efforts of the others.
@@ -150,11 +150,11 @@ Time time_to(const Curve& curve, Errors error, double target) {
 
 std::string table(const std::vector<BodyCurves>& all) {
   std::vector<std::vector<std::string>> rows = {
-      {"body", "faces", "method", "trees", "total to 0.1 %", "0.01 %", "0.001 %", "bins to 5 %", "1 %"}};
+      {"body", "faces", "method", "before", "total to 0.1 %", "0.01 %", "0.001 %", "bins to 5 %", "1 %"}};
   for (const BodyCurves& body : all) {
     for (const Curve& c : body.curves) {
       rows.push_back(
-          {body.name, std::to_string(body.triangles), c.method, !c.ends ? fmt::format("{:.2g} s", c.prepared_s) : "–"});
+          {body.name, std::to_string(body.triangles), c.method, fmt::format("{:.2g} s", median(c.prepared_s))});
       for (const double target : kTotals) rows.back().push_back(time_to(c, total_error, target).text());
       for (const double target : kBins) rows.back().push_back(time_to(c, bins_error, target).text());
     }
@@ -165,13 +165,13 @@ std::string table(const std::vector<BodyCurves>& all) {
 std::string csv(const std::vector<BodyCurves>& all) {
   std::string text =
       "# relative errors against the exact pulse, over seeds; effort: log2 of rays; medians of seconds of tracing\n"
-      "body,faces,method,effort,seeds,trace_s,total_rms,total_largest,bins_mean,trees_s\n";
+      "body,faces,method,effort,seeds,trace_s,total_rms,total_largest,bins_mean,before_s\n";
   for (const BodyCurves& body : all) {
     for (const Curve& c : body.curves) {
       for (const Measured& m : c.at)
         text += fmt::format("{},{},\"{}\",{},{},{:.6g},{:.4e},{:.4e},{:.4e},{:.4g}\n", body.name, body.triangles,
                             c.method, m.effort, m.seconds.size(), median(m.seconds), total_error(m),
-                            *std::max_element(m.total.begin(), m.total.end()), bins_error(m), c.prepared_s);
+                            *std::max_element(m.total.begin(), m.total.end()), bins_error(m), median(c.prepared_s));
     }
   }
   return text;
@@ -234,13 +234,12 @@ int end(const Options& asked) {
   write_text(options.out, stem + ".csv", csv(all));
   write_text(
       options.out, stem + ".md",
-      fmt::format(
-          "# Time to a given error\n\nWritten by `clray-bench end` on {}; {}. Seconds of tracing, medians of {} runs "
-          "in turn; trees "
-          "are built before. Totals: rms error over seeds. Bins: mean relative error of those of 512 that hold at "
-          "least {:g} % "
-          "of an even share.\n~: beyond the longest runs, by the slope; <: the first effort is enough.\n\n{}\n{}",
-          device_line(device.info()), embree_line(), options.seeds, 100.0 * kLeastShare, table(all), about));
+      fmt::format("# Time to a given error\n\nWritten by `clray-bench end` on {}; {}.\n"
+                  "Medians of {} runs in turn: of tracing, and of what goes before it (geometry and trees). Totals: "
+                  "rms error over "
+                  "seeds.\nBins: mean relative error of those of 512 that hold at least {:g} % of an even share.\n"
+                  "~: beyond the longest runs, by the slope; <: the first effort is enough.\n\n{}\n{}",
+                  device_line(device.info()), embree_line(), options.seeds, 100.0 * kLeastShare, table(all), about));
   return wrong ? 1 : 0;
 }
 

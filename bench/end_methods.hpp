@@ -19,8 +19,8 @@ namespace clray_bench {
 struct Answer {
   double total = 0.0;        ///< m²/sr
   std::vector<double> bins;  ///< m²/sr
-  double seconds = 0.0;      ///< of tracing, without trees and programs
-  double prepared_s = 0.0;   ///< of building trees
+  double seconds = 0.0;      ///< of tracing
+  double prepared_s = 0.0;   ///< of geometry and trees, before it
 };
 
 struct EndMethod {
