@@ -100,7 +100,7 @@ class Seed {
 
 std::optional<Solved> solve(const ErrorCase& which, clray::Device& device) {
   clray::Scene scene = which.scene;
-  if (scene.detectors.at(0).kind != "delay") return {};
+  if (scene.detectors.at(0).kind != "delay" || scene.trace.max_bounces > 1) return {};
   scene.trace.rays = 0;
   scene.trace.method = clray::Method::exact;
   Solved solved;

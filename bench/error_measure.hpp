@@ -57,7 +57,7 @@ struct Solved {
   double truth = 0.0, bound = 0.0;
   double seconds = 0.0;
 };
-/// Nothing where the case has what cannot be solved, or no pulse.
+/// Nothing where the case has no pulse, or one that is not solved to its end.
 std::optional<Solved> solve(const ErrorCase& which, clray::Device& device);
 
 double rms(const std::vector<double>& values);
