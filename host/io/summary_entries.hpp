@@ -51,6 +51,14 @@ inline Json method_of(const Estimate& intensity) {
           {"first_bounce_m2_per_sr", intensity.exact_part}};
 }
 
+/// The same of a force.
+inline Json method_of(const VectorEstimate& coefficient) {
+  if (!coefficient.partly_exact()) return method_of(coefficient.rounding_bound);
+  return {{"method", "exact first bounce"},
+          {"rounding_bound", coefficient.rounding_bound},
+          {"first_bounce_coefficient_m2", vector(coefficient.exact_part)}};
+}
+
 class SummaryEntries {
  public:
   explicit SummaryEntries(const Writer& w) : writer(w) {}

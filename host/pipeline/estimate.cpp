@@ -141,6 +141,7 @@ Estimate sum_of_parts(const Estimate& a, const Estimate& b) {
   e.standard_error += b.standard_error;
   e.low += b.low;
   e.high += b.high;
+  e.rounding_bound += b.rounding_bound;
   e.relative_variance_of_variance = std::fmax(a.relative_variance_of_variance, b.relative_variance_of_variance);
   return e;
 }

@@ -48,7 +48,6 @@ std::string obstacle_to(const Scene& scene, const TableRow& row) {
       return "every material is a mirror";
   }
   if (row.scatters) {
-    if (scene.trace.max_bounces > 1) return "light is followed over several bounces";
     // The momentum of the light that such surfaces send on is a closed form.
     if (const Material* m = misfit(scene, [](const TableRow& model) { return model.even || model.delta; }))
       return fmt::format("material {} reflects neither evenly nor as a mirror", m->name);
@@ -74,10 +73,10 @@ std::size_t sights_of(const Scene& scene, const DetectorSpec& detector) {
 
 /// What of a detector's light the first bounce does not bring, so that rays must find it; empty: nothing.
 std::string rest(const Scene& scene, const DetectorSpec& detector) {
-  if (!table_row("detector", detector.kind).connects) return {};
   if (scene.trace.max_bounces > 1) return "further bounces";
   // Mirrors reach cones alone: rays find which.
-  if (misfit(scene, [](const TableRow& model) { return !model.delta; })) return "mirrors";
+  const bool connects = table_row("detector", detector.kind).connects;
+  if (connects && misfit(scene, [](const TableRow& model) { return !model.delta; })) return "mirrors";
   return {};
 }
 

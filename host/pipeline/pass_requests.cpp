@@ -58,24 +58,23 @@ class Requests {
 
   // Every detector whose rays start at the beam from the scene's own direction: one request for all that want the
   // same lanes, and one for those that take a wide band in parts. What can be solved needs no rays and goes apart.
-  // Rays that leave out the first bounce serve detectors that have it solved, and those that connect nothing.
+  // Rays whose first hits are not connected serve detectors that have these solved, and those that connect nothing.
   void beam() {
     PassRequest r = request("trace");
     for (std::size_t o = 0; o < scene_.observers.size(); ++o) r.observers.push_back(static_cast<int>(o));
     PassRequest solved = exact(r), rest = r;
-    rest.first_exact = true;
     PassRequest parts = r, solved_parts = solved;
     std::vector<MethodChoice> choices(scene_.detectors.size());
-    bool first_exact = false;
+    bool first_connected = false;
     for (std::size_t d = 0; d < scene_.detectors.size(); ++d) {
       if (!row(d).beam || is_grid(d)) continue;
       choices[d] = choose_method(scene_, geometry_, scene_.detectors[d], instants_.size());
-      first_exact = first_exact || choices[d].first_exact;
+      first_connected = first_connected || (choices[d].first_exact && row(d).connects);
     }
     for (std::size_t d = 0; d < scene_.detectors.size(); ++d) {
       if (!row(d).beam || is_grid(d)) continue;
       const bool in_parts = lanes_of(scene_, row(d)).front().share < 1.0;
-      const bool joins = choices[d].first_exact || (first_exact && !row(d).connects);
+      const bool joins = row(d).connects ? choices[d].first_exact : first_connected;
       PassRequest& points = in_parts ? parts : joins ? rest : r;
       add_detector(d, choices[d], choices[d].exact ? (in_parts ? solved_parts : solved) : points);
     }
@@ -96,6 +95,7 @@ class Requests {
   void add_detector(std::size_t d, const MethodChoice& choice, PassRequest& request) const {
     const DetectorSpec& spec = scene_.detectors[d];
     request.detectors.push_back(static_cast<int>(d));
+    if (choice.first_exact) request.first_exact.push_back(static_cast<int>(d));
     request.method.push_back(shown_name(spec) +
                              (choice.exact         ? ", exact: "
                               : choice.first_exact ? ", first bounce exact: "

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "beam/beams.hpp"
 #include "beam/strata.hpp"
@@ -153,14 +154,9 @@ SumLayout layout_of(const PassPlan& plan, std::vector<PassDetector>* detectors) 
 }
 
 /// The exact pass of a request's first bounce, for those of its detectors that have one.
-PassRequest first_bounce_of(const Scene& scene, PassRequest request) {
-  const auto followed = [&](int d) {
-    return !table_row("detector", scene.detectors[static_cast<std::size_t>(d)].kind).connects;
-  };
-  request.detectors.erase(std::remove_if(request.detectors.begin(), request.detectors.end(), followed),
-                          request.detectors.end());
+PassRequest first_bounce_of(PassRequest request) {
+  request.detectors = std::exchange(request.first_exact, {});
   request.exact = true;
-  request.first_exact = false;
   request.replicates = 1;
   request.phase = "exact";
   return request;
@@ -188,6 +184,12 @@ std::optional<PathBins> path_bins_of(const std::vector<PassDetector>& detectors)
 }
 
 }  // namespace
+
+bool first_is_exact(const Scene& scene, const PassRequest& request, bool connects) {
+  return std::any_of(request.first_exact.begin(), request.first_exact.end(), [&](int d) {
+    return table_row("detector", scene.detectors[static_cast<std::size_t>(d)].kind).connects == connects;
+  });
+}
 
 const PassDetector* find_detector(const PassPlan& plan, const std::string& id) {
   for (const PassDetector& detector : plan.detectors) {
@@ -222,7 +224,7 @@ PassPlan plan_pass(const Scene& scene, const Geometry& geometry, PassRequest req
     for (const Orientation& view : plan.request.orientations) plan.motions.push_back(motions_of(scene, geometry, view));
   } else {
     // Where the first bounce is solved, rays serve later ones, whose delays strata do not foresee.
-    const bool first = !plan.request.first_exact;
+    const bool first = !first_is_exact(scene, plan.request, true);
     const auto by = !plan.traits.connect ? Steering::By::area : first ? Steering::By::direct : Steering::By::exchange;
     plan.beams = stratified(std::move(plan.beams), scene, geometry, plan.request,
                             {plan.materials, plan.request.lanes.size(), by, plan.paths,
@@ -230,9 +232,9 @@ PassPlan plan_pass(const Scene& scene, const Geometry& geometry, PassRequest req
   }
   plan.constants = constants_of(scene, plan);
   plan.program = specialise(scene, geometry, plan);
-  if (plan.request.first_exact) {
+  if (!plan.request.first_exact.empty()) {
     plan.first = std::make_shared<FirstBounce>();
-    plan.first->plan = plan_pass(scene, geometry, first_bounce_of(scene, plan.request), reflectances);
+    plan.first->plan = plan_pass(scene, geometry, first_bounce_of(plan.request), reflectances);
     plan.first->blocks = added_blocks(plan, plan.first->plan);
   }
   return plan;

@@ -23,12 +23,12 @@ namespace clray {
 struct PassRequest : BeamRequest {
   std::string phase;                  ///< for progress
   std::vector<int> detectors;         ///< indices into Scene::detectors
+  std::vector<int> first_exact;       ///< those of them whose first bounce is solved; rays find the rest
   std::size_t first_orientation = 0;  ///< where the orientations stand in Result::orientations
   std::vector<Lane> lanes;
   bool grid = false;                ///< the views are a grid of light directions of a detector's own
   bool apart = false;               ///< it is traced under light of its own, beside others under the scene's
   bool exact = false;               ///< visibility is solved: no rays, one replicate
-  bool first_exact = false;         ///< that of the first bounce alone; rays find the rest
   std::vector<std::string> method;  ///< why its detectors are solved or sampled
   std::uint32_t replicates = 16;
 };
@@ -85,7 +85,7 @@ struct PassPlan {
 };
 
 /// The first bounce of a pass, solved: an exact pass of the same views, lanes and connections, and what it found. Rays
-/// leave out the light that their first hits send to observers; readers of sums add it (sum_reader.hpp).
+/// leave out what its detectors would see of first hits; readers of sums add it (sum_reader.hpp).
 struct FirstBounce {
   PassPlan plan;
   Sums sums;                ///< empty until it is solved
@@ -105,6 +105,10 @@ PassPlan plan_pass(const Scene& scene, const Geometry& geometry, PassRequest req
 
 /// The program of a pass, from everything else that its plan says.
 Specialised specialise(const Scene& scene, const Geometry& geometry, const PassPlan& plan);
+
+/// Whether a detector of the request that connects light (or none does, that only follows it) has its first bounce
+/// solved.
+bool first_is_exact(const Scene& scene, const PassRequest& request, bool connects);
 
 /// The detector of this id in a pass, or null.
 const PassDetector* find_detector(const PassPlan& plan, const std::string& id);

@@ -24,10 +24,7 @@ class Specialiser {
   Specialised run() {
     out_.kept = plan_.request.method;
     if (plan_.request.exact) return exact();
-    if (plan_.request.first_exact) {
-      out_.kept.push_back("faces, tiles and their visible parts: the first bounce is solved");
-      out_.left_out.push_back("connections of first hits: the first bounce is solved, rays find the rest");
-    }
+    first_hits();
     tables();
     detectors();
     rays();
@@ -51,6 +48,18 @@ class Specialiser {
     out_.left_out.push_back("rays, their random numbers and replicates: nothing is sampled");
     if (!geometry_.trees) out_.left_out.push_back("trees: no pass has rays");
     return std::move(out_);
+  }
+
+  // What rays leave out of their first hits, since it is solved.
+  void first_hits() {
+    const bool connected = first_is_exact(scene_, plan_.request, true);
+    const bool pushed = first_is_exact(scene_, plan_.request, false);
+    define("CLRAY_SKIP_FIRST", plan_.request.mirrors || connected ? 1 : 0);
+    define("CLRAY_SKIP_PUSH", pushed ? 1 : 0);
+    if (!connected && !pushed) return;
+    out_.kept.push_back("faces, tiles and their visible parts: the first bounce is solved");
+    if (connected) out_.left_out.push_back("connections of first hits: they are solved, rays find the rest");
+    if (pushed) out_.left_out.push_back("push of first hits: it is solved, rays find the rest");
   }
 
   void define(const std::string& name, std::uint64_t value) { out_.options.defines[name] = std::to_string(value); }
@@ -178,7 +187,6 @@ class Specialiser {
   void sizes() {
     define("CLRAY_PIXELS", plan_.request.pixels ? 1 : 0);
     define("CLRAY_MIRRORS_FIRST", plan_.request.mirrors ? 1 : 0);
-    define("CLRAY_SKIP_FIRST", plan_.request.mirrors || plan_.request.first_exact ? 1 : 0);
     define("CLRAY_CONNECT", plan_.traits.connect ? 1 : 0);
     define("CLRAY_SOBOL", scene_.trace.sobol ? 1 : 0);
     define("CLRAY_LANES", plan_.request.lanes.size());

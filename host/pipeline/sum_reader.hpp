@@ -34,9 +34,11 @@ class SumReader {
                       std::uint64_t k) const {
     return sums_.counts[at(plan_.layout.blocks[block], view, lane, c, r) + k];
   }
+  /// Whether a solved first bounce adds to a block.
+  bool adds_to(std::uint32_t block) const { return plan_.first && plan_.first->blocks[block] >= 0; }
   /// What the solved first bounce adds to a value in every replicate; 0 where none is solved.
   double solved(std::uint32_t block, std::size_t view, std::size_t lane, std::size_t c, std::uint64_t k) const {
-    if (!plan_.first || plan_.first->blocks[block] < 0) return 0.0;
+    if (!adds_to(block)) return 0.0;
     return first().value(static_cast<std::uint32_t>(plan_.first->blocks[block]), view, lane, c, 0, k);
   }
   /// Of an exact pass, or of a solved first bounce: a bound of the rounding of A, m²/sr.
@@ -45,8 +47,10 @@ class SumReader {
     const SumShape& shape = plan_.layout.shape;
     return sums_.rounding[(view * shape.lanes + lane) * shape.connections + c];
   }
-  /// Of an exact pass: a bound of the rounding of the lit area, m².
-  double area_rounding(std::size_t view) const { return sums_.area_rounding[view]; }
+  /// Of an exact pass, or of a solved first bounce: a bound of the rounding of the lit area, m².
+  double area_rounding(std::size_t view) const {
+    return plan_.first ? first().area_rounding(view) : sums_.area_rounding[view];
+  }
   /// A weight's sum without its area: of pixels, radiance over irradiance times the points.
   double weight(std::uint32_t block, std::size_t view, std::size_t lane, std::uint32_t r, std::uint64_t k) const {
     return static_cast<double>(sums_.values[at(plan_.layout.blocks[block], view, lane, 0, r) + k]) * weight_unit(view);

@@ -86,7 +86,7 @@ double unseen_share(const PassPlan& plan, const Sums& sums) {
 
 std::vector<std::string> doubtful_claims(const PassPlan& plan, const Geometry& geometry, const Sums& sums) {
   std::vector<std::string> warnings;
-  if (plan.request.paints() || plan.request.exact || plan.request.first_exact) return warnings;
+  if (plan.request.paints() || plan.request.exact || plan.first) return warnings;
   const std::uint64_t fewest = *std::min_element(sums.points.begin(), sums.points.end());
   const double rays = static_cast<double>(fewest) * plan.request.replicates;
   const double share = plan.traits.connect && curved(geometry, rays) ? unseen_share(plan, sums) : 0.0;

@@ -43,6 +43,9 @@ struct VectorEstimate {
   Vec3 standard_error{0.0};
   Vec3 relative_variance_of_variance{0.0};                           ///< as in Estimate
   double rounding_bound = std::numeric_limits<double>::quiet_NaN();  ///< of each component, as in Estimate
+  Vec3 exact_part{std::numeric_limits<double>::quiet_NaN()};         ///< as in Estimate
+
+  bool partly_exact() const { return !std::isnan(exact_part.x); }
 };
 
 /// Which member of a run a record belongs to; empty names where there is only one.

@@ -221,7 +221,7 @@ void write_pressure(Writer& writer) {
 Json pressure_entry(const PressureResult& record, const Scene& scene) {
   const auto& c = record.coefficient_m2;
   const auto& t = record.torque_coefficient_m3;
-  Json entry = method_of(c.rounding_bound);
+  Json entry = method_of(c);
   entry.update(
       {{"sun", vector(record.sun)},
        {"low_nm", record.band.low_nm},

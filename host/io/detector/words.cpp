@@ -41,6 +41,7 @@ std::string scaled(const VectorEstimate& v, int axis, double scale) {
   e.value = v.value[axis];
   e.standard_error = v.standard_error[axis];
   e.rounding_bound = v.rounding_bound;
+  e.exact_part = v.exact_part[axis];
   return scaled(e, scale);
 }
 

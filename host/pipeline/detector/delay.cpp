@@ -149,7 +149,7 @@ struct HitSizes {
 HitSizes hit_sizes(const RoomResults& x, std::size_t v, std::size_t l, std::size_t c) {
   const double replicates = x.plan.request.replicates;
   const std::uint64_t hits = hits_of(x.plan, x.read, v, l, c);
-  if (hits == 0 && x.plan.first) {
+  if (hits == 0 && x.read.adds_to(x.detector.first_block + kBins)) {
     // Rays found nothing beside the solved part: what they may have missed is taken for as bright as that.
     const double of_ray =
         solved_intensity(x.plan, x.read, v, l, c) / (static_cast<double>(x.read.points(v)) * replicates);
@@ -166,7 +166,7 @@ void add_bin(const RoomResults& x, double solved, const BinSample& s, const HitS
   const double value = s.mean + solved, most = poisson_upper95(s.hits);
   double error = s.spread;
   bool resolved = x.plan.request.exact || (s.hits >= 10 && 2 * s.replicates_hit >= replicates);
-  if (!resolved && x.plan.first) {
+  if (!resolved && x.read.adds_to(x.detector.first_block + kBins)) {
     // Few hits show no error to be trusted. At 95 % no more than `most` were due, each of the mean size. A bin that is
     // known as well as ten hits know it, since most of it is solved, is resolved.
     const double missed = most - static_cast<double>(s.hits);

@@ -51,7 +51,7 @@ inline Estimate intensity_estimate(const PassPlan& plan, const SumReader& read, 
   const double rays = hits != 0 ? static_cast<double>(hits) / plan.request.replicates : rays_of(read, v);
   const double solved = solved_intensity(plan, read, v, l, c);
   Estimate e = estimate_total(intensities(plan, read, v, l, c), rays, solved);
-  if (plan.first) {
+  if (read.adds_to(find_detector(plan, "intensity")->first_block)) {
     e.exact_part = solved;
     e.rounding_bound = read.rounding(v, l, c);
   }

@@ -76,18 +76,32 @@ std::vector<double> push(const PassPlan& plan, const PassDetector& d, const SumR
   });
 }
 
+/// What a solved first bounce adds to each of them.
+double solved_push(const PassPlan& plan, const PassDetector& d, const SumReader& read, std::size_t v,
+                   const LaneRecord& record, std::size_t first, std::size_t last, std::uint64_t k) {
+  double sum = 0.0;
+  for (std::size_t l = record.first; l < record.end; ++l) {
+    for (std::size_t part = first; part < last; ++part)
+      sum += plan.request.lanes[l].share * read.solved(d.first_block, v, l, 0, part * kPushes + k);
+  }
+  return sum * (k >= 3 ? plan.scales.lever_m : 1.0);
+}
+
 VectorEstimate vector_of(const RoomResults& x, std::size_t v, const LaneRecord& record, std::size_t first,
                          std::size_t last, std::uint64_t k) {
   VectorEstimate out;
+  const bool first_exact = x.read.adds_to(x.detector.first_block);
   for (int axis = 0; axis < 3; ++axis) {
+    const std::uint64_t number = k + static_cast<std::uint64_t>(axis);
+    const double solved = solved_push(x.plan, x.detector, x.read, v, record, first, last, number);
     const Estimate e =
-        estimate_total(push(x.plan, x.detector, x.read, v, record, first, last, k + static_cast<std::uint64_t>(axis)),
-                       rays_of(x.read, v));
+        estimate_total(push(x.plan, x.detector, x.read, v, record, first, last, number), rays_of(x.read, v), solved);
+    if (first_exact) out.exact_part[axis] = solved;
     out.value[axis] = e.value;
     out.standard_error[axis] = e.standard_error;
     out.relative_variance_of_variance[axis] = e.relative_variance_of_variance;
   }
-  if (x.plan.request.exact) {
+  if (x.plan.request.exact || first_exact) {
     // Light hands over at most twice its momentum, and five thirds of it with heat.
     out.rounding_bound = 2.0 * x.read.area_rounding(v) * (k >= 3 ? x.plan.scales.lever_m : 1.0);
   }
@@ -114,6 +128,8 @@ PressureResult pressure_record(const RoomResults& x, std::size_t v, const LaneRe
 
 void add_vector(const VectorEstimate& more, VectorEstimate* total) {
   total->value += more.value;
+  total->exact_part += more.exact_part;
+  total->rounding_bound += more.rounding_bound;
   total->standard_error += more.standard_error;
   for (int axis = 0; axis < 3; ++axis) {
     double& doubt = total->relative_variance_of_variance[axis];
@@ -155,8 +171,10 @@ void pressure_targets(const TargetContext& x, std::vector<Target>* targets) {
     double square = 0.0;
     for (std::uint64_t k = 0; k < kPushes; ++k) {
       Target& target = k < 3 ? force : torque;
-      target.components.push_back(push(x.plan, x.detector, x.read, x.view, record, 0, x.plan.traits.components, k));
-      const double mean = k < 3 ? estimate_mean(target.components.back()).value : 0.0;
+      const std::size_t components = x.plan.traits.components;
+      target.components.push_back(push(x.plan, x.detector, x.read, x.view, record, 0, components, k));
+      target.solved.push_back(solved_push(x.plan, x.detector, x.read, x.view, record, 0, components, k));
+      const double mean = k < 3 ? estimate_mean(target.components.back()).value + target.solved.back() : 0.0;
       square += mean * mean;
     }
     torque.scale = std::sqrt(square) * x.geometry.radius;
