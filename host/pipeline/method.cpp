@@ -71,9 +71,10 @@ std::size_t sights_of(const Scene& scene, const DetectorSpec& detector) {
   return 1 + static_cast<std::size_t>(elsewhere);
 }
 
-/// What of a detector's light the first bounce does not bring, so that rays must find it; empty: nothing.
-std::string rest(const Scene& scene, const DetectorSpec& detector) {
-  if (scene.trace.max_bounces > 1) return "further bounces";
+/// What of a detector's light the first bounce does not bring, so that rays must find it; empty: nothing. `body` may be
+/// null where it is not known yet.
+std::string rest(const Scene& scene, const DetectorSpec& detector, const Geometry* body) {
+  if (scene.trace.max_bounces > 1 && (body == nullptr || !body->convex())) return "further bounces";
   // Mirrors reach cones alone: rays find which.
   const bool connects = table_row("detector", detector.kind).connects;
   if (connects && misfit(scene, [](const TableRow& model) { return !model.delta; })) return "mirrors";
@@ -97,8 +98,9 @@ bool may_need_no_rays(const Scene& scene) {
   if (scene.trace.method == Method::points || scene.trace.rays != 0) return false;
   return std::all_of(scene.components.begin(), scene.components.end(),
                      [](const Component& c) { return table_row("shape", c.shape).flat; }) &&
-         std::all_of(scene.detectors.begin(), scene.detectors.end(),
-                     [&](const DetectorSpec& d) { return obstacle(scene, d).empty() && rest(scene, d).empty(); });
+         std::all_of(scene.detectors.begin(), scene.detectors.end(), [&](const DetectorSpec& d) {
+           return obstacle(scene, d).empty() && rest(scene, d, nullptr).empty();
+         });
 }
 
 MethodChoice choose_method(const Scene& scene, const Geometry& geometry, const DetectorSpec& detector,
@@ -107,7 +109,7 @@ MethodChoice choose_method(const Scene& scene, const Geometry& geometry, const D
   if (t.method == Method::points) return {false, "points are asked for"};
   std::string why = obstacle(scene, detector);
   if (why.empty() && !made_of_polygons(geometry)) why = "a curved shape is in the scene";
-  const std::string sampled = rest(scene, detector);
+  const std::string sampled = why.empty() ? rest(scene, detector, &geometry) : "";
   const auto solved = [&](const std::string& because) {
     return MethodChoice{sampled.empty(), because + (sampled.empty() ? "" : "; rays find " + sampled), !sampled.empty()};
   };

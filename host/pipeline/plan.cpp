@@ -18,7 +18,7 @@ namespace {
 
 PathTraits traits_of(const Scene& scene, const PassRequest& request, const MaterialTable& materials) {
   PathTraits t;
-  t.max_bounces = request.exact ? 1 : scene.trace.max_bounces;
+  t.max_bounces = request.one_bounce ? 1 : scene.trace.max_bounces;
   t.components = static_cast<std::uint32_t>(scene.components.size());
   t.connections = static_cast<std::uint32_t>(request.observers.size());
   bool followed = t.max_bounces > 1;
@@ -156,7 +156,7 @@ SumLayout layout_of(const PassPlan& plan, std::vector<PassDetector>* detectors) 
 /// The exact pass of a request's first bounce, for those of its detectors that have one.
 PassRequest first_bounce_of(PassRequest request) {
   request.detectors = std::exchange(request.first_exact, {});
-  request.exact = true;
+  request.exact = request.one_bounce = true;
   request.replicates = 1;
   request.phase = "exact";
   return request;

@@ -29,6 +29,7 @@ struct PassRequest : BeamRequest {
   bool grid = false;                ///< the views are a grid of light directions of a detector's own
   bool apart = false;               ///< it is traced under light of its own, beside others under the scene's
   bool exact = false;               ///< visibility is solved: no rays, one replicate
+  bool one_bounce = false;          ///< whatever the scene says: it is the first bounce of another pass
   std::vector<std::string> method;  ///< why its detectors are solved or sampled
   std::uint32_t replicates = 16;
 };

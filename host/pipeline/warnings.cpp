@@ -86,10 +86,12 @@ double unseen_share(const PassPlan& plan, const Sums& sums) {
 
 std::vector<std::string> doubtful_claims(const PassPlan& plan, const Geometry& geometry, const Sums& sums) {
   std::vector<std::string> warnings;
-  if (plan.request.paints() || plan.request.exact || plan.first) return warnings;
+  if (plan.request.paints() || plan.request.exact) return warnings;
   const std::uint64_t fewest = *std::min_element(sums.points.begin(), sums.points.end());
   const double rays = static_cast<double>(fewest) * plan.request.replicates;
-  const double share = plan.traits.connect && curved(geometry, rays) ? unseen_share(plan, sums) : 0.0;
+  const bool sampled =
+      plan.traits.connect && !SumReader(plan, sums).adds_to(find_detector(plan, "intensity")->first_block);
+  const double share = sampled && curved(geometry, rays) ? unseen_share(plan, sums) : 0.0;
   if (share > kUnseenShare) {
     warnings.push_back(
         fmt::format("these surfaces can return a peak that the rays may have missed, with up to {:.2g} times a total: "

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The first bounce solved and the rest from rays. Closed forms: two Lambert plates at a right angle (the form factor of
-// rectangles with a common edge, Howell's catalogue C-14) and a mirror wall beside a Lambert floor. Light from within
-// the angle reaches both plates whole, and all of both is seen.
+// The first bounce solved and the rest from rays. Closed forms: two Lambert plates at a right angle
+// (support/corner.hpp) and a mirror wall beside a Lambert floor.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -10,62 +9,12 @@
 #include "clray/error.hpp"
 #include "clray/trace.hpp"
 #include "support/checks.hpp"
+#include "support/corner.hpp"
 #include "support/coverage.hpp"
 
 using namespace clray_test;
 
 namespace {
-
-constexpr double kFloor = 2.0, kWall = 1.5, kEdge = 1.0;  // lengths from the common edge, and the edge's, m
-
-MeshPtr quad(const std::vector<clray::Vec3>& corners) {
-  auto mesh = std::make_shared<clray::Mesh>();
-  mesh->vertices = corners;
-  mesh->triangles = {{0, 1, 2}, {0, 2, 3}};
-  mesh->triangle_slot = {0, 0};
-  mesh->material_slots = {""};
-  return mesh;
-}
-
-/// The floor z = 0, x >= 0 and the wall x = 0, z >= 0; the common edge is along y.
-MeshPtr floor_mesh() {
-  const double y = 0.5 * kEdge;
-  return quad({{0, -y, 0}, {kFloor, -y, 0}, {kFloor, y, 0}, {0, y, 0}});
-}
-MeshPtr wall_mesh() {
-  const double y = 0.5 * kEdge;
-  return quad({{0, -y, 0}, {0, y, 0}, {0, y, kWall}, {0, -y, kWall}});
-}
-
-clray::Scene corner(const clray::Material& floor, const clray::Material& wall, const clray::Vec3& s, int bounces,
-                    int log2_rays = 12) {
-  clray::Scene scene = scene_of(floor_mesh(), floor);
-  add(scene, wall_mesh(), wall);
-  monostatic(scene, s);
-  scene.trace.max_bounces = bounces;
-  scene.trace.method = clray::Method::exact;
-  return rays(scene, log2_rays);
-}
-
-/// Share of the light of the floor that meets the wall.
-double form_factor() {
-  const double h = kWall / kEdge, w = kFloor / kEdge, h2 = h * h, w2 = w * w, d = std::sqrt(h2 + w2);
-  const double logs = std::log((1 + w2) * (1 + h2) / (1 + w2 + h2)) +
-                      w2 * std::log(w2 * (1 + w2 + h2) / ((1 + w2) * (w2 + h2))) +
-                      h2 * std::log(h2 * (1 + h2 + w2) / ((1 + h2) * (h2 + w2)));
-  return (w * std::atan(1 / w) + h * std::atan(1 / h) - d * std::atan(1 / d) + 0.25 * logs) / (kPi * w);
-}
-
-/// A of one and of two reflections in a corner of Lambert plates, both within the angle of source and observer.
-struct CornerLight {
-  double first = 0.0, second = 0.0;
-};
-CornerLight corner_light(double floor_rho, double wall_rho, const clray::Vec3& s, const clray::Vec3& o) {
-  const double first = (floor_rho * s.z * o.z * kFloor + wall_rho * s.x * o.x * kWall) * kEdge / kPi;
-  // From the floor to the wall, and the other way: the same areas and the same share.
-  const double exchanged = floor_rho * wall_rho * kFloor * kEdge * form_factor() / kPi;
-  return {first, exchanged * (s.z * o.x + s.x * o.z)};
-}
 
 double sum_of(const clray::DelayResult& d) {
   double sum = d.below_m2_per_sr + d.above_m2_per_sr;
@@ -232,66 +181,6 @@ TEST_CASE("four bounces agree with points, whose errors in bins are larger at eq
     // Four variances of 15 degrees of freedom each: known to 18 %.
     CHECK(variance[0] < 1.4 * variance[1]);
     CHECK(ratios < 0.5);
-  }
-}
-
-TEST_CASE("force and torque: the first push is that of one bounce, and the sum agrees with points") {
-  const clray::Vec3 s = toward(0.9, 0.4);
-  const MeshPtr box_wing = merged({box_mesh(1.0, 1.0, 2.0), moved(plate_mesh(3.0, 1.0), {2.25, 0.0, 0.125})});
-  clray::Scene scenes[] = {corner(lambert(0.8), mirror(0.7), s, 3), scene_of(box_wing, lambert(0.9))};
-  monostatic(scenes[1], s);
-  for (clray::Scene& scene : scenes) {
-    scene.reference_point = {0.1, 0.2, 0.3};
-    detect(scene, "pressure", {{"thermal", 1.0}});
-    scene.trace.method = clray::Method::exact;
-    scene.trace.max_bounces = 1;
-    scene.trace.rays = 0;
-    const clray::PressureResult once = run(scene).pressure.at(0);
-    scene.trace.max_bounces = 3;
-    const clray::PressureResult mixed = run(rays(scene, 16)).pressure.at(0);
-    scene.trace.method = clray::Method::points;
-    const clray::PressureResult points = run(scene).pressure.at(0);
-    double errors[2] = {};
-    for (const auto vector : {&clray::PressureResult::coefficient_m2, &clray::PressureResult::torque_coefficient_m3}) {
-      const clray::VectorEstimate &first = once.*vector, &a = mixed.*vector, &b = points.*vector;
-      CHECK(a.partly_exact());
-      CHECK(a.rounding_bound > 0.0);
-      for (int k = 0; k < 3; ++k) {
-        CHECK(std::fabs(a.exact_part[k] - first.value[k]) <= 1e-12);
-        CHECK(std::fabs(a.value[k] - b.value[k]) <= 4.0 * std::hypot(a.standard_error[k], b.standard_error[k]) + 1e-9);
-        errors[0] += a.standard_error[k] * a.standard_error[k];
-        errors[1] += b.standard_error[k] * b.standard_error[k];
-      }
-    }
-    for (std::size_t part = 0; part < mixed.component_m2.size(); ++part) {
-      const clray::VectorEstimate &a = mixed.component_m2[part], &b = points.component_m2[part];
-      for (int k = 0; k < 3; ++k)
-        CHECK(std::fabs(a.value[k] - b.value[k]) <= 4.0 * std::hypot(a.standard_error[k], b.standard_error[k]) + 1e-9);
-    }
-    INFO("standard errors ", std::sqrt(errors[0]), ", of points ", std::sqrt(errors[1]));
-    CHECK(errors[0] < (scene.components.size() == 1 ? 0.5 : 1.0) * errors[1]);
-    // Books are of the rays alone, whatever is solved.
-    CHECK(std::fabs(mixed.absorbed_m2.value - points.absorbed_m2.value) <=
-          4.0 * std::hypot(mixed.absorbed_m2.standard_error, points.absorbed_m2.standard_error));
-  }
-}
-
-TEST_CASE("a grid of Sun directions with several bounces agrees with points") {
-  const MeshPtr box_wing = merged({box_mesh(1.0, 1.0, 2.0), moved(plate_mesh(3.0, 1.0), {2.25, 0.0, 0.125})});
-  clray::Scene scene = scene_of(box_wing, lambert(0.9));
-  detect(scene, "pressure", {{"azimuth_steps", 4.0}, {"elevation_steps", 3.0}});
-  scene.trace.max_bounces = 2;
-  scene.trace.method = clray::Method::exact;
-  const clray::Result mixed = run(rays(scene, 14));
-  scene.trace.method = clray::Method::points;
-  const clray::Result points = run(scene);
-  REQUIRE(mixed.pressure.size() == points.pressure.size());
-  for (std::size_t k = 0; k < mixed.pressure.size(); ++k) {
-    const clray::VectorEstimate &a = mixed.pressure[k].coefficient_m2, &b = points.pressure[k].coefficient_m2;
-    CHECK(a.partly_exact());
-    for (int axis = 0; axis < 3; ++axis)
-      CHECK(std::fabs(a.value[axis] - b.value[axis]) <=
-            4.5 * std::hypot(a.standard_error[axis], b.standard_error[axis]) + 1e-9);
   }
 }
 

@@ -36,7 +36,10 @@ EnergyBooks books_of(const RoomResults& x, const LaneRecord& record) {
     for (double& m : mean) m /= static_cast<double>(views);
     *entries[which] = estimate_total(mean, rays);
   }
-  if (x.plan.request.exact) e.truncated_m2.value = std::numeric_limits<double>::quiet_NaN();  // not followed, not known
+  // Reflected light is not followed, so that it is not known what hits the body again. Several bounces are solved
+  // where nothing can.
+  if (x.plan.request.exact && x.plan.traits.max_bounces == 1)
+    e.truncated_m2.value = std::numeric_limits<double>::quiet_NaN();
   return e;
 }
 
