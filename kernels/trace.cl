@@ -22,10 +22,12 @@
 #include "stage/shade.cl"
 #include "stage/scatter.cl"
 #include "stage/path.cl"
+#include "stage/packet.cl"
 
 /// Runs the work-items first_item … first_item + items - 1 of a block of points, first_point … first_point + points - 1
 /// of every replicate. The number of an item stands for its view (a place in `asked`), pixel, replicate and part; the
-/// part runs fastest. With n parts, part k is every n-th point of the block from the k-th on, at most `chunk` points.
+/// part runs fastest. With packets it stands for view and part only. With n parts, part k is every n-th point of the
+/// block from the k-th on, at most `chunk` points.
 #define CLRAY_ARGUMENT(type, name) type *name,
 #define CLRAY_VALUE(type, name) name,
 __kernel void clray_trace(CLRAY_BUFFERS(CLRAY_ARGUMENT) u64 first_item, u32 items, u32 first_point, u32 points,
@@ -35,6 +37,9 @@ __kernel void clray_trace(CLRAY_BUFFERS(CLRAY_ARGUMENT) u64 first_item, u32 item
   const u32 chunks = (points + chunk - 1u) / max(chunk, 1u);
   u64 item = first_item + get_global_id(0);
   u32 part = (u32)(item % max(chunks, 1u));
+#if CLRAY_PACKET
+  trace_packets(&g, asked[item / max(chunks, 1u)], first_point, points, part, chunk);
+#else
   // Points whose indices differ only in their high bits are neighbours in Sobol's first dimension. With its bits
   // reversed, the part gives such points to one work-item and to those beside it, so all of them meet the same strip of
   // the beam.
@@ -60,4 +65,5 @@ __kernel void clray_trace(CLRAY_BUFFERS(CLRAY_ARGUMENT) u64 first_item, u32 item
     trace_path(&g, &sampler, &tally);
   }
   tally_flush(&g, &tally);
+#endif
 }

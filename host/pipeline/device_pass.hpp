@@ -35,7 +35,7 @@ class DevicePass {
   /// Sets everything that is summed for these views to zero.
   void clear(const PassPlan& plan);
 
-  std::uint64_t slice_items = 4096;  ///< of the next launch
+  std::uint64_t slice_items = 1;  ///< of the next launch
 
  private:
   OpenedDevice& opened_;

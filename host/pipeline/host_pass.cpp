@@ -58,10 +58,23 @@ bool host_has_room(const PassPlan& plan) {
   return n.CLRAY_LANES_ <= CLRAY_LANE_ROOM && n.CLRAY_KEPT_ <= CLRAY_KEPT_ROOM;
 }
 
-std::uint64_t items_of(const PassPlan& plan, std::size_t views, std::uint32_t points, std::uint32_t chunk) {
+namespace {
+
+/// Replicates and pixels of a view, each with points of its own.
+std::uint64_t streams_of(const PassPlan& plan) {
   const PictureSize& size = plan.request.picture;
   const std::uint64_t pixels = plan.request.pixels ? static_cast<std::uint64_t>(size.width) * size.height : 1;
-  return (static_cast<std::uint64_t>(points) + chunk - 1) / chunk * plan.request.replicates * pixels * views;
+  return plan.request.replicates * pixels;
+}
+
+std::uint64_t parts_of(std::uint32_t points, std::uint32_t chunk) {
+  return (static_cast<std::uint64_t>(points) + chunk - 1) / chunk;
+}
+
+}  // namespace
+
+std::uint64_t items_of(const PassPlan& plan, std::size_t views, std::uint32_t points, std::uint32_t chunk) {
+  return parts_of(points, chunk) * views * (in_packets(plan) ? 1 : streams_of(plan));
 }
 
 Sums trace_on_host(const PassPlan& plan, const Geometry& geometry, std::uint32_t points, std::uint32_t chunk) {
@@ -70,7 +83,7 @@ Sums trace_on_host(const PassPlan& plan, const Geometry& geometry, std::uint32_t
   numbers = numbers_of(plan.program.options);
   std::vector<i64> sums(in.sums.count), wide(in.wide.count), counters(in.counters.count);
   std::vector<u32> counts(in.counts.count);
-  const std::uint64_t items = items_of(plan, plan.beams.views.size(), points, chunk);
+  const std::uint64_t items = parts_of(points, chunk) * plan.beams.views.size() * streams_of(plan);
   for (global_id = 0; global_id < items; ++global_id) {
     clray_trace(in.pass.data, in.views.data, in.asked.data, in.connections.data, in.nodes.data, in.primitives.data,
                 in.shapes.data, in.instances.data, in.materials.data, in.tables.data, in.directions.data,

@@ -23,6 +23,7 @@ namespace {
 constexpr double kSliceSeconds = 0.15;                  // of a launch: an interrupt waits no longer
 constexpr std::uint64_t kMostContributions = 1u << 24;  // per accumulator between drains (scales())
 constexpr std::uint32_t kChunk = 16;                    // points of a work-item
+constexpr std::uint32_t kPacketChunk = 256;             // points of each replicate of a work-item with packets
 
 }  // namespace
 
@@ -30,8 +31,10 @@ PassRunner::PassRunner(Device& device, const PassPlan& plan, const Geometry& geo
     : plan_(plan), options_(options) {
   const double start = now();
   for (OpenedDevice& opened : device.impl().devices) run_traced_self_test(opened, plan, options.specialise);
-  for (OpenedDevice& opened : device.impl().devices)
+  for (OpenedDevice& opened : device.impl().devices) {
     devices_.push_back(std::make_unique<DevicePass>(opened, plan, geometry));
+    devices_.back()->slice_items = in_packets(plan) ? 4 : 4096;
+  }
   compile_seconds_ = now() - start;
 }
 
@@ -71,7 +74,8 @@ bool PassRunner::run(Sums* sums, const std::vector<std::uint32_t>& views, std::u
 
 bool PassRunner::run_block(std::size_t views, std::uint32_t first_point, std::uint32_t points,
                            const std::function<bool(double)>& keep_going) {
-  const std::uint32_t chunk = std::min(kChunk, points);
+  const bool packets = in_packets(plan_);
+  const std::uint32_t chunk = std::min(packets ? kPacketChunk : kChunk, points);
   WorkSource source(items_of(plan_, views, points, chunk));
   std::atomic<bool> go{true};
   std::mutex mutex;
@@ -83,11 +87,12 @@ bool PassRunner::run_block(std::size_t views, std::uint32_t first_point, std::ui
         if (!range) return;
         const auto count = static_cast<std::uint32_t>(range->count);
         const double start = now();
-        device.launch_items(range->first, count, {first_point, points, chunk}, options_.work_group_size);
+        device.launch_items(range->first, count, {first_point, points, chunk}, packets ? 1 : options_.work_group_size);
         const double seconds = now() - start;
         const double factor = std::clamp(kSliceSeconds / std::max(seconds, 1e-6), 0.25, 4.0);
         if (count == device.slice_items || factor < 1.0)
-          device.slice_items = std::clamp<std::uint64_t>(static_cast<std::uint64_t>(factor * count), 256, 1u << 26);
+          device.slice_items =
+              std::clamp<std::uint64_t>(static_cast<std::uint64_t>(factor * count), packets ? 4 : 256, 1u << 26);
         const std::lock_guard<std::mutex> lock(mutex);
         const double done = static_cast<double>(range->first + count) / static_cast<double>(source.items());
         if (!keep_going(std::min(1.0, done))) go = false;

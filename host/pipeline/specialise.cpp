@@ -3,6 +3,7 @@
 // and sums that the pass needs, and its sizes. What a scene does not need is not compiled.
 #include <algorithm>
 
+#include "device/device_impl.hpp"
 #include "pipeline/detector/room.hpp"
 #include "pipeline/exact_sights.hpp"
 #include "pipeline/plan.hpp"
@@ -137,6 +138,14 @@ class Specialiser {
     *kept += size * detectors;
   }
 
+  // Packets have one ray of every replicate, in one direction and one frame.
+  bool packets() const {
+    const bool moving = std::any_of(geometry_.parts.begin(), geometry_.parts.end(),
+                                    [](const Part& part) { return part.hinged_component >= 0; });
+    return scene_.trace.walk == "packet" && scene_.trace.sobol && !plan_.request.pixels && !all_ && !moving &&
+           plan_.request.replicates == 16;
+  }
+
   bool shadows() const {
     return std::any_of(plan_.beams.connections.begin(), plan_.beams.connections.end(),
                        [](const ClrayConnection& c) { return c.shadow != 0; });
@@ -189,6 +198,11 @@ class Specialiser {
     define("CLRAY_MIRRORS_FIRST", plan_.request.mirrors ? 1 : 0);
     define("CLRAY_CONNECT", plan_.traits.connect ? 1 : 0);
     define("CLRAY_SOBOL", scene_.trace.sobol ? 1 : 0);
+    define("CLRAY_PACKET", packets() ? 1 : 0);
+    // Packets are no wider than some faces. Powers of two, so that scenes share programs.
+    std::uint64_t finest = 1;
+    while (16 * finest * finest < geometry_.primitives.size()) finest *= 2;
+    if (packets()) define("CLRAY_PACKET_FINEST", finest);
     define("CLRAY_LANES", plan_.request.lanes.size());
     define("CLRAY_CONNECTIONS", plan_.traits.connections);
     // Few sizes, so that scenes share programs.
@@ -204,6 +218,23 @@ class Specialiser {
 };
 
 }  // namespace
+
+bool in_packets(const PassPlan& plan) {
+  const auto packet = plan.program.options.defines.find("CLRAY_PACKET");
+  return packet != plan.program.options.defines.end() && packet->second == "1";
+}
+
+void fit_to(Device& device, std::vector<PassPlan>* plans) {
+  const std::vector<OpenedDevice>& devices = device.impl().devices;
+  const bool all_cpus = std::all_of(devices.begin(), devices.end(), [](const OpenedDevice& opened) {
+    return opened.info.type.find("cpu") != std::string::npos;
+  });
+  for (PassPlan& plan : *plans) {
+    if (all_cpus || !in_packets(plan)) continue;
+    plan.program.options.defines["CLRAY_PACKET"] = "0";
+    plan.program.left_out.push_back("packets of rays: for CPUs");
+  }
+}
 
 Specialised specialise(const Scene& scene, const Geometry& geometry, const PassPlan& plan) {
   return Specialiser(scene, geometry, plan).run();

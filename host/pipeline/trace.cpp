@@ -97,7 +97,8 @@ Result trace(const Scene& scene, Device& device, const TraceHooks& hooks) {
   const Geometry geometry = geometry_of(scene, &requests);
   result.mesh = geometry.report;
   result.extent_m = geometry.extent;
-  const std::vector<PassPlan> plans = plan_passes(scene, geometry, std::move(requests));
+  std::vector<PassPlan> plans = plan_passes(scene, geometry, std::move(requests));
+  fit_to(device, &plans);
   result.seconds.bvh = now() - start;
   result.digest = kFnvStart;
   bool target_reached = true;
@@ -160,7 +161,8 @@ std::string kernel_source(const Scene& scene, Device& device) {
   check_scene(scene);
   const DeviceUse use(device);
   const Geometry geometry = build_geometry(scene);
-  const std::vector<PassPlan> plans = plan_passes(scene, geometry);
+  std::vector<PassPlan> plans = plan_passes(scene, geometry);
+  fit_to(device, &plans);
   return program_source(device.impl().devices.front(), plans.front().program.entry, plans.front().program.options);
 }
 

@@ -121,16 +121,23 @@ static void intersect_tree(const Buffers* g, const Ray* ray, const LocalRay* pla
   }
 }
 
-/// The nearest hit (or, with `any`, some hit): 1, or 0 when the ray escapes.
-static i32 intersect(const Buffers* g, const Ray* ray, u32 view, u32 any, Hit* hit) {
-  const __global ClrayView* from = g->views + view;
-  const vec3 centre = v3_load(from->box_centre);
+/// No hit so far.
+static void hit_clear(Hit* hit) {
   hit->t = INFINITY;
   hit->primitive = 0xffffffffu;
   hit->id = 0xffffffffu;
   hit->instance = 0u;
+  hit->part = 0u;
   hit->plane = 0u;
   hit->rank = 0u;
+  hit->weights = v3(0.0, 0.0, 0.0);
+}
+
+/// The nearest hit (or, with `any`, some hit): 1, or 0 when the ray escapes.
+static i32 intersect(const Buffers* g, const Ray* ray, u32 view, u32 any, Hit* hit) {
+  const __global ClrayView* from = g->views + view;
+  const vec3 centre = v3_load(from->box_centre);
+  hit_clear(hit);
   if (!CLRAY_INSTANCED) {
     const LocalRay placed = local_ray(ray->o, ray->d, ray->skip_plane);
     intersect_tree(g, ray, &placed, centre, from->box_scale, from->root, 0u, any, hit);
@@ -212,17 +219,20 @@ static Surface hit_surface(const Buffers* g, const Ray* ray, const Hit* hit) {
   return surface;
 }
 
-/// The stage: 1 and the surface that the ray hits first, or 0.
-static i32 stage_intersect(const Buffers* g, const Ray* ray, u32 view, Surface* surface) {
-  Hit hit;
-  if (!intersect(g, ray, view, 0u, &hit)) return 0;
-  *surface = hit_surface(g, ray, &hit);
-  if (!(surface->mu >= 0.0 && surface->mu <= 2.0)) {
+/// The stage: 1 and what the ray hits first, or 0.
+static i32 stage_intersect(const Buffers* g, const Ray* ray, u32 view, Hit* hit) {
+  return intersect(g, ray, view, 0u, hit);
+}
+
+/// The surface that a ray has hit.
+static Surface stage_surface(const Buffers* g, const Ray* ray, const Hit* hit) {
+  Surface surface = hit_surface(g, ray, hit);
+  if (!(surface.mu >= 0.0 && surface.mu <= 2.0)) {
     count_event(g->counters, CLRAY_COUNT_LOST);
-    surface->lit = 0u;
-    surface->mu = 0.0;
+    surface.lit = 0u;
+    surface.mu = 0.0;
   }
-  return 1;
+  return surface;
 }
 
 /// A ray that leaves a surface toward d, started off the surface by more than the point's error.

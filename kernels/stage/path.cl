@@ -10,35 +10,44 @@ static f64 piece_length(const Buffers* g, const Tally* tally, u32 bounce, vec3 f
   return -v3_dot(v3_load(g->views[tally->view].toward), v3_sub(to, v3_load(g->pass->reference)));
 }
 
-static void trace_path(const Buffers* g, Sampler* sampler, Tally* tally) {
-  Path path;
+/// Follows a path from its start; `met`: whether its first ray hits anything, and what.
+static void follow_path(const Buffers* g, Sampler* sampler, Tally* tally, Path* path, Ray ray, i32 met, Hit hit) {
   Surface surface;
-  Ray ray = stage_generate(g, sampler, tally, &path);
   surface.point = ray.o;
   ++tally->started;
   const u32 last = CLRAY_SCATTER ? g->pass->max_bounces : 1u;
   for (u32 bounce = 0; bounce <= last; ++bounce) {
     const vec3 before = surface.point;
-    if (!stage_intersect(g, &ray, tally->view, &surface)) {
+    if (!met) {
       ++tally->escaped;
-      if (bounce > 0u) record_escape(g, tally, &path, shade_mirror(g, tally, &path, &ray, &surface));
+      if (bounce > 0u) record_escape(g, tally, path, shade_mirror(g, tally, path, &ray, &surface));
       return;
     }
+    surface = stage_surface(g, &ray, &hit);
     if (bounce == last) break;
-    path.length += piece_length(g, tally, bounce, before, surface.point);
-    record_hit(g, tally, bounce, &surface, &path);
-    stage_shade(g, tally, bounce, &surface, &path);
+    path->length += piece_length(g, tally, bounce, before, surface.point);
+    record_hit(g, tally, bounce, &surface, path);
+    stage_shade(g, tally, bounce, &surface, path);
     if (!CLRAY_SCATTER) break;
-    Scattering scattering = stage_scatter(g, sampler, bounce, &surface, &path, &ray);
-    const i32 lives = stage_roulette(bounce, &path, &scattering);
-    record_scatter(g, tally, bounce, &surface, &path, &scattering);
+    Scattering scattering = stage_scatter(g, sampler, bounce, &surface, path, &ray);
+    const i32 lives = stage_roulette(bounce, path, &scattering);
+    record_scatter(g, tally, bounce, &surface, path, &scattering);
     if (!lives) {
       ++tally->killed;
       return;
     }
+    met = stage_intersect(g, &ray, tally->view, &hit);
   }
   ++tally->capped;
-  record_end(g, tally, &path);
+  record_end(g, tally, path);
+}
+
+static void trace_path(const Buffers* g, Sampler* sampler, Tally* tally) {
+  Path path;
+  Hit hit;
+  const Ray ray = stage_generate(g, sampler, tally, &path);
+  const i32 met = stage_intersect(g, &ray, tally->view, &hit);
+  follow_path(g, sampler, tally, &path, ray, met, hit);
 }
 
 #endif

@@ -24,26 +24,38 @@ static f32 bvh_inverse(f64 d) {
   return (f32)(1.0 / d);
 }
 
-static void bvh_axis(f64 o, f64 d, u32 axis, f32* near, f32* far, f32* inv, u32* row) {
-  const f32 rounded = (f32)o;
-  const f32 pad = (fabs(rounded) + 1.0f) * 2.384185791015625e-7f;  // 2^-22
+/// Of a coordinate between `low` and `high`, what reaches a slab first and what leaves it last.
+static void bvh_axis(f64 low, f64 high, f64 d, u32 axis, f32* near, f32* far, f32* inv, u32* row) {
+  const f32 least = (f32)low, most = (f32)high;
+  const f32 below = least - (fabs(least) + 1.0f) * 2.384185791015625e-7f;  // 2^-22
+  const f32 above = most + (fabs(most) + 1.0f) * 2.384185791015625e-7f;
   const bool negative = d < 0.0;
-  *near = negative ? rounded - pad : rounded + pad;
-  *far = negative ? rounded + pad : rounded - pad;
+  *near = negative ? below : above;
+  *far = negative ? above : below;
   *inv = bvh_inverse(d);
   *row = 2u * axis + (negative ? 1u : 0u);
 }
 
-/// Starts at `root` with the ray o + t·d (d a unit vector) in a frame whose boxes are (x − centre)·scale.
-static void bvh_begin(BvhWalk* walk, u32 root, vec3 o, vec3 d, vec3 centre, f64 scale) {
-  const vec3 from = v3_scale(scale, v3_sub(o, centre));
-  bvh_axis(from.x, d.x, 0u, &walk->near_x, &walk->far_x, &walk->inv_x, &walk->row_x);
-  bvh_axis(from.y, d.y, 1u, &walk->near_y, &walk->far_y, &walk->inv_y, &walk->row_y);
-  bvh_axis(from.z, d.z, 2u, &walk->near_z, &walk->far_z, &walk->inv_z, &walk->row_z);
+/// Starts at `root` with all rays o + t·d (d a unit vector) whose origins have each coordinate between those of `low`
+/// and `high`, in a frame whose boxes are (x − centre)·scale.
+/// A box that one of the rays touches is opened. With fp32's rounding and this padding each t_near of the ray alone is
+/// at most its true value, each t_far at least its own. Rounding keeps order: (x - centre)·scale, its fp32 value and
+/// that value with its padding grow with x. So for d > 0 `near` is at least, and `far` at most, what that ray alone
+/// would have, and (bound - near)·inv is at most, (bound - far)·inv at least, what it would compute; for d < 0 the
+/// roles of `low` and `high` change, and so does the sign of inv.
+static void bvh_begin_between(BvhWalk* walk, u32 root, vec3 low, vec3 high, vec3 d, vec3 centre, f64 scale) {
+  const vec3 a = v3_scale(scale, v3_sub(low, centre)), b = v3_scale(scale, v3_sub(high, centre));
+  bvh_axis(a.x, b.x, d.x, 0u, &walk->near_x, &walk->far_x, &walk->inv_x, &walk->row_x);
+  bvh_axis(a.y, b.y, d.y, 1u, &walk->near_y, &walk->far_y, &walk->inv_y, &walk->row_y);
+  bvh_axis(a.z, b.z, d.z, 2u, &walk->near_z, &walk->far_z, &walk->inv_z, &walk->row_z);
   walk->scale = scale;
   walk->stack[0] = node_child(root, 0u);
   walk->stack_t[0] = 0.0f;
   walk->top = 1;
+}
+
+static void bvh_begin(BvhWalk* walk, u32 root, vec3 o, vec3 d, vec3 centre, f64 scale) {
+  bvh_begin_between(walk, root, o, o, d, centre, scale);
 }
 
 /// Opens one inner node: pushes the children that may be hit before t_max, the nearest last.

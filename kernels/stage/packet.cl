@@ -1,0 +1,395 @@
+// SPDX-License-Identifier: Apache-2.0
+// Packets: rays of a beam that start near each other meet the body together. A work-item carries points of all
+// replicates that are neighbours in the unit square, puts them in the order of their places in the beam, and cuts that
+// order into packets of up to 16 rays that are no wider than the beam's points and the body's faces make worth while.
+// Which ray hits what has the same bits as for a ray alone (stage/intersect.cl): the walk hands out every leaf that one
+// of them touches, and the fp64 test of triangles is that of shape/triangle.cl, four rays at a time.
+#ifndef CLRAY_PACKET_CL
+#define CLRAY_PACKET_CL
+
+#if CLRAY_PACKET
+
+#define CLRAY_PACKET_RAYS 16u
+#define CLRAY_PACKET_FEW 4u      // rays that go alone rather than as a packet are fewer
+#define CLRAY_PACKET_CELLS 256u  // points of each replicate that a work-item carries, at most
+#define CLRAY_PACKET_ITEM (CLRAY_PACKET_RAYS * CLRAY_PACKET_CELLS)
+
+/// Rays of a packet and what they have hit so far. Coordinates of origins as in triangle_permute().
+typedef struct Packet {
+  f64 x[CLRAY_PACKET_RAYS], y[CLRAY_PACKET_RAYS], z[CLRAY_PACKET_RAYS];
+  f64 t[CLRAY_PACKET_RAYS];
+  Ray ray[CLRAY_PACKET_RAYS];
+  Hit hit[CLRAY_PACKET_RAYS];
+  u32 rays;  // those after it stand where the first does and hit nothing
+  // The rectangle across the rays that they start in, in the frame of shape/triangle.cl: its middle as a point, half
+  // its sizes, and a bound of what rounding may move a vertex across.
+  vec3 middle;
+  f64 half_x, half_y, margin;
+  f64 loss, unit;  // of edge functions: a bound of their rounding; what brings them near 1
+  f32 loss_here;   // in that unit, rounded up
+  f32 px[CLRAY_PACKET_RAYS], py[CLRAY_PACKET_RAYS];  // places in the rectangle, -1 to 1
+} Packet;
+
+static double4 products_difference4(double4 a, double4 b, double4 c, double4 d) {
+  const double4 w = c * d;
+  return fma(a, b, -w) + fma(-c, d, w);
+}
+
+/// Tests a primitive against ray k of a packet alone.
+static void packet_test_one(const Buffers* g, Packet* p, u32 k, u32 index) {
+  const LocalRay placed = local_ray(p->ray[k].o, p->ray[k].d, 0u);
+  test_primitive(g, &placed, index, 0u, &p->hit[k]);
+  p->t[k] = p->hit[k].t;
+}
+
+#if CLRAY_TRIANGLES
+/// The rays of a packet (a bit each) that may hit a triangle: all but those that lie beyond one of its edges for
+/// certain. In x and y across the rays, from the middle of the packet, vertices a, b, c stand in .s012. The edge
+/// function of b and c at (x, y) is (c - (x, y)) × (b - (x, y)) = c × b + x·(c.y - b.y) + y·(b.x - c.x), and so on
+/// round; a ray inside has the sign of their sum (which does not depend on x and y) in all three, or zero.
+/// Errors: vertices are off by `margin` at most. They, and the places of rays, are no farther from the middle than the
+/// body and the rays are large, so an edge function is off by less than `loss`, 8·margin times that. The fp64 test's
+/// own vertices are no farther off: a ray beyond an edge by more than `loss` is outside for it, too. In fp32, with
+/// places in units of half_x and half_y, the three terms of an edge function are rounded, the places are, and so are
+/// the two sums: seven times 2^-24 of the sum of the terms' sizes at most. 2^-20 of it is added.
+// lint: box test
+static u32 packet_may_hit(const Packet* p, const RayShear* r, const __global f64* data) {
+  const u32 ix = r->axis == 2u ? 0u : r->axis + 1u, iy = ix == 2u ? 0u : ix + 1u;
+  const double4 z = (double4)(data[r->axis], data[3u + r->axis], data[6u + r->axis], 0.0) - p->middle.z;
+  const double4 x = fma((double4)(-r->sx), z, (double4)(data[ix], data[3u + ix], data[6u + ix], 0.0) - p->middle.x);
+  const double4 y = fma((double4)(-r->sy), z, (double4)(data[iy], data[3u + iy], data[6u + iy], 0.0) - p->middle.y);
+  const double4 x1 = x.s2013, x2 = x.s1203, y1 = y.s2013, y2 = y.s1203;
+  const double4 edge = x1 * y2 - y1 * x2;
+  const f64 det = edge.s0 + edge.s1 + edge.s2;
+  if (fabs(det) <= 4.0 * p->loss) return 0xffffu;
+  const f64 unit = det < 0.0 ? -p->unit : p->unit;
+  const float4 along_x = convert_float4((y1 - y2) * (unit * p->half_x));
+  const float4 along_y = convert_float4((x2 - x1) * (unit * p->half_y));
+  const float4 rest = convert_float4(edge * unit);
+  const float4 start = rest + (fabs(rest) + fabs(along_x) + fabs(along_y)) * 9.5367431640625e-7f + p->loss_here;
+  u32 mask = 0u;
+  for (u32 k = 0; k < 2u; ++k) {
+    const float8 px = vload8(k, p->px), py = vload8(k, p->py);
+    const float8 u = fma((float8)(along_x.s0), px, fma((float8)(along_y.s0), py, (float8)(start.s0)));
+    const float8 v = fma((float8)(along_x.s1), px, fma((float8)(along_y.s1), py, (float8)(start.s1)));
+    const float8 w = fma((float8)(along_x.s2), px, fma((float8)(along_y.s2), py, (float8)(start.s2)));
+    const float8 uv = u < v ? u : v, least = uv < w ? uv : w;
+    const int8 bits = ~(least < (float8)(0.0f)) & (int8)(1, 2, 4, 8, 16, 32, 64, 128);
+    const int4 four = bits.lo | bits.hi;
+    const int2 two = four.lo | four.hi;
+    mask |= (u32)(two.s0 | two.s1) << (8u * k);
+  }
+  return mask;
+}
+// lint: end box test
+
+/// Tests a triangle against all rays of a packet: triangle_intersect() for four at a time.
+static void packet_triangle(const Buffers* g, Packet* p, const RayShear* r, u32 index) {
+  const __global ClrayPrimitive* primitive = g->primitives + index;
+  const __global f64* data = g->shapes + primitive->data;
+  const u32 mask = packet_may_hit(p, r, data);
+  if (mask == 0u) return;
+  const vec3 pa = triangle_permute(v3_load(data), r->axis);
+  const vec3 pb = triangle_permute(v3_load(data + 3), r->axis);
+  const vec3 pc = triangle_permute(v3_load(data + 6), r->axis);
+  const double4 sx = (double4)(-r->sx), sy = (double4)(-r->sy);
+  for (u32 q = 0; q < CLRAY_PACKET_RAYS / 4u; ++q) {
+    if (((mask >> (4u * q)) & 15u) == 0u) continue;
+    const double4 ox = vload4(q, p->x), oy = vload4(q, p->y), oz = vload4(q, p->z);
+    const double4 a_along = pa.z - oz, b_along = pb.z - oz, c_along = pc.z - oz;
+    const double4 ax = fma(sx, a_along, pa.x - ox), ay = fma(sy, a_along, pa.y - oy);
+    const double4 bx = fma(sx, b_along, pb.x - ox), by = fma(sy, b_along, pb.y - oy);
+    const double4 cx = fma(sx, c_along, pc.x - ox), cy = fma(sy, c_along, pc.y - oy);
+    const double4 u = products_difference4(cx, by, cy, bx);
+    const double4 v = products_difference4(ax, cy, ay, cx);
+    const double4 w = products_difference4(bx, ay, by, ax);
+    const long4 below = (u < 0.0) | (v < 0.0) | (w < 0.0), above = (u > 0.0) | (v > 0.0) | (w > 0.0);
+    const double4 det = u + v + w;
+    const long4 in = ~(below & above) & (det != 0.0);
+    if ((in.s0 | in.s1 | in.s2 | in.s3) == 0) continue;
+    const double4 az = r->sz * a_along, bz = r->sz * b_along, cz = r->sz * c_along;
+    const double4 t = fma(u, az, fma(v, bz, w * cz)) / det;
+    const long4 ok = in & (t > 0.0) & (t <= vload4(q, p->t));
+    if ((ok.s0 | ok.s1 | ok.s2 | ok.s3) == 0) continue;
+    f64 ts[4], us[4], vs[4], ws[4];
+    i64 oks[4];
+    vstore4(t, 0, ts);
+    vstore4(u / det, 0, us);
+    vstore4(v / det, 0, vs);
+    vstore4(w / det, 0, ws);
+    vstore4(ok, 0, oks);
+    for (u32 k = 0; k < 4u; ++k) {
+      if (oks[k] == 0) continue;
+      Hit* hit = &p->hit[4u * q + k];
+      if (ts[k] == hit->t && (hit->rank != 0u || primitive->id >= hit->id)) continue;
+      hit->t = ts[k];
+      hit->primitive = index;
+      hit->id = primitive->id;
+      hit->part = 0u;
+      hit->plane = 0u;
+      hit->rank = 0u;
+      hit->weights = v3(us[k], vs[k], ws[k]);
+      p->t[4u * q + k] = ts[k];
+    }
+  }
+}
+#endif
+
+#if CLRAY_TRIANGLES
+// lint: box test
+/// Finds the rectangle that the rays of a packet start in. Coordinates across the rays come from a few roundings of
+/// numbers no larger than the body's and the rays' own: 2^-44 of these is more than all of them.
+static void packet_frame(const __global ClrayView* from, const RayShear* r, vec3 low, vec3 high, Packet* p) {
+  const f64 size = size_of(v3_load(from->box_centre)) + size_of(low) + size_of(high) + 4.0 / from->box_scale;
+  p->margin = size * 5.684341886080802e-14;
+  const vec3 middle =
+      triangle_permute(v3(0.5 * (low.x + high.x), 0.5 * (low.y + high.y), 0.5 * (low.z + high.z)), r->axis);
+  p->middle = middle;
+  double4 half_x = (double4)(0.0), half_y = half_x;
+  for (u32 q = 0; q < CLRAY_PACKET_RAYS / 4u; ++q) {
+    const double4 z = vload4(q, p->z) - middle.z;
+    const double4 x = fabs(fma((double4)(-r->sx), z, vload4(q, p->x) - middle.x));
+    const double4 y = fabs(fma((double4)(-r->sy), z, vload4(q, p->y) - middle.y));
+    half_x = half_x > x ? half_x : x;
+    half_y = half_y > y ? half_y : y;
+  }
+  p->half_x = f64_max(f64_max(half_x.s0, half_x.s1), f64_max(half_x.s2, half_x.s3)) + p->margin;
+  p->half_y = f64_max(f64_max(half_y.s0, half_y.s1), f64_max(half_y.s2, half_y.s3)) + p->margin;
+  const vec3 centre = v3_load(from->box_centre);
+  p->loss = 8.0 * p->margin * (size_of(v3_sub(low, centre)) + size_of(v3_sub(high, centre)) + 4.0 / from->box_scale);
+  p->unit = from->box_scale * from->box_scale;
+  p->loss_here = (f32)(p->loss * p->unit) * 1.001f + 1.0e-30f;
+  for (u32 q = 0; q < CLRAY_PACKET_RAYS / 4u; ++q) {
+    const double4 z = vload4(q, p->z) - middle.z;
+    const double4 x = fma((double4)(-r->sx), z, vload4(q, p->x) - middle.x) / p->half_x;
+    const double4 y = fma((double4)(-r->sy), z, vload4(q, p->y) - middle.y) / p->half_y;
+    vstore4(convert_float4(x), q, p->px);
+    vstore4(convert_float4(y), q, p->py);
+  }
+}
+// lint: end box test
+
+/// Whether a primitive is a triangle that shares its plane with no other face.
+static bool packet_takes(const __global ClrayPrimitive* primitive) {
+#if CLRAY_ANALYTIC
+  if (primitive->shape != CLRAY_SHAPE_triangle) return false;
+#endif
+#if CLRAY_PLANES
+  if (primitive->planes != CLRAY_NO_PLANES) return false;
+#endif
+  return true;
+}
+#endif
+
+/// Finds what each ray of a packet hits first.
+static void packet_intersect(const Buffers* g, u32 view, Packet* p) {
+  const __global ClrayView* from = g->views + view;
+  if (p->rays < CLRAY_PACKET_FEW) {
+    for (u32 k = 0; k < p->rays; ++k) intersect(g, &p->ray[k], view, 0u, &p->hit[k]);
+    return;
+  }
+  for (u32 k = p->rays; k < CLRAY_PACKET_RAYS; ++k) p->ray[k] = p->ray[0];
+#if CLRAY_TRIANGLES
+  const RayShear shear = triangle_shear(p->ray[0].o, p->ray[0].d);
+#endif
+  vec3 low = p->ray[0].o, high = low;
+  for (u32 k = 0; k < CLRAY_PACKET_RAYS; ++k) {
+    const vec3 o = p->ray[k].o;
+    low = v3(f64_min(low.x, o.x), f64_min(low.y, o.y), f64_min(low.z, o.z));
+    high = v3(f64_max(high.x, o.x), f64_max(high.y, o.y), f64_max(high.z, o.z));
+#if CLRAY_TRIANGLES
+    const vec3 placed = triangle_permute(o, shear.axis);
+    p->x[k] = placed.x;
+    p->y[k] = placed.y;
+    p->z[k] = placed.z;
+#endif
+    hit_clear(&p->hit[k]);
+    p->t[k] = k < p->rays ? INFINITY : -INFINITY;
+  }
+#if CLRAY_TRIANGLES
+  packet_frame(from, &shear, low, high, p);
+#endif
+  BvhWalk walk;
+  u32 first, count;
+  f64 t_max = INFINITY;
+  bvh_begin_between(&walk, from->root, low, high, p->ray[0].d, v3_load(from->box_centre), from->box_scale);
+  while (bvh_next(&walk, g->nodes, t_max, &first, &count, g->counters)) {
+    for (u32 index = first; index < first + count; ++index) {
+      const __global ClrayPrimitive* primitive = g->primitives + index;
+#if CLRAY_TRIANGLES
+      if (packet_takes(primitive)) {
+        packet_triangle(g, p, &shear, index);
+        continue;
+      }
+#endif
+      for (u32 k = 0; k < p->rays; ++k) packet_test_one(g, p, k, index);
+    }
+    double4 far = vload4(0, p->t);
+    for (u32 q = 1; q < CLRAY_PACKET_RAYS / 4u; ++q) {
+      const double4 t = vload4(q, p->t);
+      far = far > t ? far : t;
+    }
+    t_max = f64_max(f64_max(far.s0, far.s1), f64_max(far.s2, far.s3));
+  }
+}
+
+/// The superset sum mod 2: bit j of the result is the sum of the bits k of x of which j has no bit that k lacks. It
+/// carries a point's index to its coordinate in Sobol's second dimension, bits reversed, and back.
+static u32 superset_sum(u32 x) {
+  x ^= (x >> 1) & 0x55555555u;
+  x ^= (x >> 2) & 0x33333333u;
+  x ^= (x >> 4) & 0x0f0f0f0fu;
+  x ^= (x >> 8) & 0x00ff00ffu;
+  return x ^ ((x >> 16) & 0x0000ffffu);
+}
+
+/// What scramble_reversed() makes into numbers whose first bits are those of `bits`, as far as `mask` (of low bits, as
+/// reversed) goes.
+static u32 unscramble_reversed(u32 bits, u32 seed, u32 mask) {
+  const u32 y = reverse_bits(bits) & mask;
+  u32 x = y;
+  for (u32 known = mask; known != 0u; known >>= 2) x = y ^ (x * 0x53a22864u);
+  const u32 z = x;
+  for (u32 known = mask; known != 0u; known >>= 1) x = z ^ (x * 0x05526c56u);
+  const u32 factor = (seed >> 16) | 1u;
+  u32 inverse = factor;  // Newton's iteration doubles its 3 right bits
+  for (u32 k = 0; k < 4u; ++k) inverse *= 2u - factor * inverse;
+  x = x * inverse - seed;
+  const u32 v = x;
+  for (u32 known = mask; known != 0u; known >>= 1) x = v ^ (x * 0x3d20adeau);
+  return x & mask;
+}
+
+/// The first of the 2^(bits - a - b) indices of a block of 2^bits points from `first` on (a multiple of their number)
+/// whose first coordinate begins with the a bits of `cell_u`, the second with the b bits of `cell_v` (bits at the top
+/// of the word). They differ from it by superset_sum(n << b) << a for n = 0, 1, …
+/// In Sobol's first dimension the index is the coordinate, bits reversed. In its second the polynomial of the index's
+/// bits, taken at 1 + x, is that of the coordinate. With index = low + x^a·high that is low(1 + x) + (1 + x)^a·high(1 +
+/// x), and (1 + x)^32 is 1 up to x^31.
+static u32 first_index(const Sampler* s, u32 first, u32 a, u32 b, u32 cell_u, u32 cell_v) {
+  const u32 mask_a = (1u << a) - 1u, mask_b = (1u << b) - 1u;
+  const u32 low = unscramble_reversed(cell_u, s->words[2], mask_a);
+  u32 y = unscramble_reversed(cell_v, s->words[3], mask_b) ^ superset_sum(first | low);
+  for (u32 k = 0; k < 5u; ++k) {
+    if (((32u - a) >> k) & 1u) y ^= y << (1u << k);
+  }
+  return first | low | (superset_sum(y & mask_b) << a);
+}
+
+/// Bits 0, 2, 4, … of x, side by side.
+static u32 even_bits(u32 x) {
+  x &= 0x55555555u;
+  x = (x | (x >> 1)) & 0x33333333u;
+  x = (x | (x >> 2)) & 0x0f0f0f0fu;
+  x = (x | (x >> 4)) & 0x00ff00ffu;
+  return (x | (x >> 8)) & 0x0000ffffu;
+}
+
+/// A ray of the beam that waits for a packet: where it starts, its share, the replicate and its point.
+typedef struct BeamPoint {
+  f64 u, v, share;
+  u32 replicate, index;
+} BeamPoint;
+
+/// Draws the points of one replicate that are a work-item's.
+static void packet_points(const Buffers* g, const Sampler* s, u32 view, u32 first_point, u32 points, u32 part,
+                          u32 chunk, BeamPoint* out) {
+  const __global ClrayView* from = g->views + view;
+  const u32 cells = min(chunk, points - part * chunk);
+  const u32 bits = 31u - clz(max(points, 1u)), own_bits = 31u - clz(max(chunk, 1u));
+  const bool whole = points == 1u << bits && chunk == 1u << own_bits && (first_point & (points - 1u)) == 0u;
+  const u32 a = whole ? (bits - own_bits + 1u) / 2u : 0u, b = whole ? bits - own_bits - a : 0u;
+  u32 start = first_point + chunk * part;
+  if (whole)
+    start = first_index(s, first_point, a, b, (even_bits(part) << 1) << (31u - a),
+                        (even_bits(part >> 1) << 1) << (31u - b));
+  for (u32 n = 0; n < cells; ++n) {
+    const u32 index = whole ? start ^ (superset_sum(n << b) << a) : start + n;
+    f64 u[2] = {unit_from_bits(scramble_reversed(index, s->words[2])),
+                unit_from_bits(scramble_reversed(superset_sum(index), s->words[3]))};
+    out[n].share = 1.0;
+    if (CLRAY_STRATA && from->strips != 0u) out[n].share = strata_place(g->strata, from, u);
+    out[n].u = u[0];
+    out[n].v = u[1];
+    out[n].replicate = s->replicate;
+    out[n].index = index;
+  }
+}
+
+/// The low 12 bits of x, each followed by a free one.
+static u32 spread_bits(u32 x) {
+  x = (x | (x << 8)) & 0x00ff00ffu;
+  x = (x | (x << 4)) & 0x0f0f0f0fu;
+  x = (x | (x << 2)) & 0x33333333u;
+  return (x | (x << 1)) & 0x55555555u;
+}
+
+/// Puts points in the order of their places along Morton's curve: order[k] is the k-th.
+static void packet_sort(const BeamPoint* points, u32 count, u32* order) {
+  u32 keys[CLRAY_PACKET_ITEM], other[CLRAY_PACKET_ITEM];
+  for (u32 k = 0; k < count; ++k) {
+    keys[k] = spread_bits((u32)(points[k].u * 4096.0)) | (spread_bits((u32)(points[k].v * 4096.0)) << 1);
+    order[k] = k;
+  }
+  for (u32 pass = 0; pass < 3u; ++pass) {
+    u32 end[256] = {0};
+    for (u32 k = 0; k < count; ++k) ++end[(keys[k] >> (8u * pass)) & 255u];
+    for (u32 k = 1; k < 256u; ++k) end[k] += end[k - 1u];
+    for (u32 k = count; k-- > 0u;) other[--end[(keys[order[k]] >> (8u * pass)) & 255u]] = order[k];
+    for (u32 k = 0; k < count; ++k) order[k] = other[k];
+  }
+}
+
+/// A work-item of packets: part `part` of a block of points, up to `chunk` of them, of all replicates of a view.
+static void trace_packets(const Buffers* g, u32 view, u32 first_point, u32 points, u32 part, u32 chunk) {
+  const u32 replicates = min(g->pass->replicates, CLRAY_PACKET_RAYS);
+  const u32 cells = min(chunk, points - part * chunk);
+  const __global ClrayView* from = g->views + view;
+  Buffers own = *g;
+  own.counters += CLRAY_COUNTERS * view;
+  Tally tally[CLRAY_PACKET_RAYS];
+  Sampler sampler[CLRAY_PACKET_RAYS];
+  BeamPoint point[CLRAY_PACKET_ITEM];
+  u32 order[CLRAY_PACKET_ITEM];
+  for (u32 r = 0; r < replicates; ++r) {
+    tally[r].view = view;
+    tally[r].replicate = r;
+    tally[r].stream = 0u;
+    tally_clear(&tally[r]);
+    const Sampler s = {g->pass->key0 ^ from->key0, g->pass->key1 ^ from->key1, g->pass->epoch, r, 0u, 0u};
+    sampler[r] = s;
+    sampler_begin(&sampler[r], g->directions, first_point);
+    packet_points(&own, &sampler[r], view, first_point, points, part, chunk, point + cells * r);
+  }
+  const u32 count = cells * replicates;
+  packet_sort(point, count, order);
+  const f64 widest = f64_min(8.0 / sqrt((f64)points), 1.0 / (f64)CLRAY_PACKET_FINEST);
+  Packet packet;
+  for (u32 begin = 0; begin < count; begin += packet.rays) {
+    f64 low_u = 1.0, high_u = 0.0, low_v = 1.0, high_v = 0.0;
+    packet.rays = 0u;
+    while (packet.rays < CLRAY_PACKET_RAYS && begin + packet.rays < count) {
+      const BeamPoint* next = point + order[begin + packet.rays];
+      low_u = f64_min(low_u, next->u);
+      high_u = f64_max(high_u, next->u);
+      low_v = f64_min(low_v, next->v);
+      high_v = f64_max(high_v, next->v);
+      if (high_u - low_u > widest || high_v - low_v > widest) break;
+      packet.ray[packet.rays++] = primary_ray(from, next->u, next->v);
+    }
+    packet_intersect(&own, view, &packet);
+    for (u32 k = 0; k < packet.rays; ++k) {
+      const BeamPoint* start = point + order[begin + k];
+      const u32 r = start->replicate;
+      Path path = path_of(start->share);
+      sampler[r].index = start->index;
+      const i32 met = packet.hit[k].primitive != 0xffffffffu;
+      follow_path(&own, &sampler[r], &tally[r], &path, packet.ray[k], met, packet.hit[k]);
+    }
+  }
+  for (u32 r = 0; r < replicates; ++r) tally_flush(&own, &tally[r]);
+}
+
+#endif
+
+#endif

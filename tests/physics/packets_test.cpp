@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+// Packets of rays against rays alone: the same digests on bodies that try what packets cull by. Slivers and needles at
+// every angle, triangles smaller than fp32 sees, edges that rays meet exactly, bodies far from the origin, very small
+// or very large, faces in one plane, analytic shapes among meshes, beams along axes; few and many points, slices of odd
+// sizes, with and without strata, bounces and shadows.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <random>
+
+#include "clray/trace.hpp"
+#include "support/scenes.hpp"
+
+using namespace clray_test;
+using clray::Scene;
+
+namespace {
+
+/// Triangles in a cube of that size about a centre: a third slivers, a third tiny, a third of any form.
+MeshPtr soup(int count, double size, clray::Vec3 centre, unsigned seed) {
+  std::mt19937_64 random(seed);
+  const auto next = [&] { return 2.0 * static_cast<double>(random() >> 11) * 0x1p-53 - 1.0; };
+  auto mesh = std::make_shared<clray::Mesh>();
+  mesh->material_slots = {""};
+  for (int t = 0; t < count; ++t) {
+    const double at[3] = {next(), next(), next()};
+    double corner[3][3];
+    for (int k = 0; k < 3; ++k) {
+      for (int axis = 0; axis < 3; ++axis) {
+        const double reach = t % 3 == 0 ? (k == 0 ? 0.0 : 0.5) : t % 3 == 1 ? 1e-7 : 0.2;
+        corner[k][axis] = at[axis] + reach * next();
+      }
+    }
+    // A sliver's third corner lies within 1e-6 of its long edge.
+    for (int axis = 0; t % 3 == 0 && axis < 3; ++axis)
+      corner[2][axis] = 0.3 * corner[0][axis] + 0.7 * corner[1][axis] + 1e-6 * next();
+    const auto first = static_cast<std::uint32_t>(mesh->vertices.size());
+    for (const auto& c : corner)
+      mesh->vertices.push_back({centre.x + size * c[0], centre.y + size * c[1], centre.z + size * c[2]});
+    mesh->triangles.push_back({first, first + 1, first + 2});
+    mesh->triangle_slot.push_back(0);
+  }
+  return mesh;
+}
+
+void check_same(const std::string& what, Scene scene) {
+  CAPTURE(what);
+  scene.trace.walk = "plain";
+  const std::uint64_t alone = run(scene).digest;
+  scene.trace.walk = "packet";
+  CHECK(run(scene).digest == alone);
+}
+
+Scene seen(Scene scene, clray::Vec3 from, int log2_rays) {
+  monostatic(scene, from);
+  rays(scene, log2_rays);
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("packets give the digests of rays alone: soups of slivers and tiny triangles, any size and place") {
+  const clray::Vec3 tilted = toward(0.6, -1.0);
+  for (unsigned seed = 1; seed <= 3; ++seed)
+    check_same("soup", seen(scene_of(soup(60, 1.0, {0, 0, 0}, seed), lambert(0.5)), tilted, 15));
+  check_same("far away", seen(scene_of(soup(60, 1.0, {3e5, -2e5, 1e5}, 4), lambert(0.5)), tilted, 14));
+  check_same("small", seen(scene_of(soup(60, 1e-6, {0, 0, 0}, 5), lambert(0.5)), tilted, 14));
+  check_same("large", seen(scene_of(soup(60, 1e6, {0, 0, 0}, 6), lambert(0.5)), tilted, 14));
+  check_same("dense", seen(scene_of(soup(3000, 1.0, {0, 0, 0}, 7), lambert(0.5)), tilted, 16));
+  for (const clray::Vec3 axis : {clray::Vec3{1, 0, 0}, clray::Vec3{0, -1, 0}, clray::Vec3{0, 0, 1}})
+    check_same("along an axis", seen(scene_of(soup(60, 1.0, {0, 0, 0}, 8), lambert(0.5)), axis, 14));
+}
+
+TEST_CASE("packets give the digests of rays alone: shared planes, shapes, bounces, shadows, points of any number") {
+  Scene scene = scene_of(sphere_mesh(24, 12, 1.0), lambert(0.5));
+  add(scene, moved(plate_mesh(3, 1), {0, 0, 1.1}), lambert(0.4));
+  add(scene, moved(plate_mesh(2, 2), {0.5, 0, 1.1}), lambert(0.7));  // in the plane of the other
+  add(scene, "cylinder", {{"radius", 0.3}, {"height", 2.0}}, lambert(0.8)).transform.translate = {1.5, 0.3, 0.2};
+  const clray::Vec3 from = toward(0.7, 0.4);
+  for (const int log2_rays : {4, 7, 12, 15}) check_same("rays", seen(scene, from, log2_rays));
+  Scene even = seen(scene, from, 13);
+  even.trace.stratify = false;
+  check_same("without strata", even);
+  Scene slices = seen(scene, from, 14);
+  slices.trace.slice_points = 100;
+  check_same("slices of 100 points", slices);
+  Scene bounces = seen(scene, from, 13);
+  bounces.trace.max_bounces = 3;
+  check_same("three bounces", bounces);
+  bistatic(bounces, from, toward(1.2, -0.3));
+  check_same("shadows", bounces);
+}
