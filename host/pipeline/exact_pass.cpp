@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // See exact_pass.hpp. Views are taken in groups, so that small bodies fill a launch; the items of a group are launched
-// in batches while the host cuts the next tiles.
+// in batches while the host cuts the next tiles, and finds the faces of the next group in threads of its own.
 #include "pipeline/exact_pass.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <future>
 
 #include "body/portable_tables.hpp"
 #include "exact/carry.hpp"
@@ -18,7 +19,7 @@
 namespace clray {
 namespace {
 
-constexpr std::size_t kGroupFaces = 1u << 16;  // of a group of views, unless one view has more
+constexpr std::size_t kGroupFaces = 1u << 16;  // of a group of views, about, unless one view has more
 constexpr std::size_t kBatchItems = 1u << 15;  // of a launch: an interrupt waits for one
 
 bool wants_all_faces(const PassPlan& plan) {
@@ -52,25 +53,36 @@ class Solver {
 
   bool run() {
     const std::size_t views = plan_.beams.views.size();
-    for (std::size_t v = 0; v < views;) {
-      Group lit = empty_group(sights_.front(), v);
-      do {
-        add_view(sights_.front(), v++, &lit);
-      } while (v < views && lit.on_device.faces.size() + lit.beams.back().faces.size() <= kGroupFaces);
+    const std::size_t together = std::max<std::size_t>(1, kGroupFaces / (1 + geometry_.primitives.size()));
+    std::vector<std::future<Group>> next = prepare(0, together);
+    for (std::size_t v = 0; v < views; v += together) {
+      std::vector<std::future<Group>> groups = std::move(next);
+      if (v + together < views) next = prepare(v + together, together);
+      Group lit = groups.front().get();
       if (!solve_lit(&lit)) return false;
       for (std::size_t s = 1; s < sights_.size(); ++s) {
-        if (!solve_seen(sights_[s], lit)) return false;
+        if (!solve_seen(sights_[s], lit, groups[s].get())) return false;
       }
     }
     return true;
   }
 
  private:
-  static Group empty_group(const Sight& sight, std::size_t first_view) {
-    Group group;
-    group.first_view = first_view;
-    group.on_device.binnings = sight.binnings;
-    return group;
+  /// The faces of some views from every sight, found in threads while devices are at work.
+  std::vector<std::future<Group>> prepare(std::size_t first_view, std::size_t count) const {
+    const std::size_t end_view = std::min(first_view + count, plan_.beams.views.size());
+    std::vector<std::future<Group>> groups;
+    for (const Sight& sight : sights_) {
+      groups.push_back(std::async(std::launch::async, [this, &sight, first_view, end_view] {
+        Group group;
+        group.first_view = first_view;
+        group.on_device.binnings = sight.binnings;
+        group.on_device.seen = !is_source(sight);
+        for (std::size_t v = first_view; v < end_view; ++v) add_view(sight, v, &group);
+        return group;
+      }));
+    }
+    return groups;
   }
 
   bool is_source(const Sight& sight) const { return &sight == &sights_.front(); }
@@ -139,11 +151,8 @@ class Solver {
   }
 
   /// What of the lit pieces an observer elsewhere sees.
-  bool solve_seen(const Sight& sight, const Group& lit) {
-    Group group = empty_group(sight, lit.first_view);
-    group.on_device.seen = true;
+  bool solve_seen(const Sight& sight, const Group& lit, Group group) {
     std::vector<Carrier> carriers;
-    for (std::size_t v = lit.first_view; v < lit.end_view(); ++v) add_view(sight, v, &group);
     for (std::size_t k = 0; k < group.beams.size(); ++k) carriers.emplace_back(lit.beams[k], group.beams[k]);
     const bool go = solve(&group, [&](std::size_t k, ItemBatch* batch) {
       const std::vector<ClrayPiece> pieces = seen_pieces(carriers[k], lit.lit[k], group, k);
