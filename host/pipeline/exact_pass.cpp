@@ -7,12 +7,12 @@
 #include <cmath>
 #include <future>
 
-#include "body/portable_tables.hpp"
 #include "exact/carry.hpp"
 #include "exact/tiles.hpp"
 #include "pipeline/clock.hpp"
 #include "pipeline/detector/room.hpp"
 #include "pipeline/exact_device.hpp"
+#include "pipeline/exact_group.hpp"
 #include "pipeline/exact_sights.hpp"
 #include "scene/tables.hpp"
 
@@ -26,18 +26,6 @@ bool wants_all_faces(const PassPlan& plan) {
   return std::any_of(plan.detectors.begin(), plan.detectors.end(),
                      [](const PassDetector& d) { return table("detector")[static_cast<std::size_t>(d.row)].scatters; });
 }
-
-/// Some views from one sight while they are solved.
-struct Group {
-  std::size_t first_view = 0;
-  std::vector<BeamFaces> beams;
-  std::vector<std::size_t> offsets;  // of each beam's faces
-  FaceGroup on_device;
-  std::vector<VisibleFace> visible;          // in the end, of all beams
-  std::vector<std::vector<ClrayPiece>> lit;  // of each beam, in the end: what other sights look for
-
-  std::size_t end_view() const { return first_view + beams.size(); }
-};
 
 class Solver {
  public:
@@ -74,66 +62,10 @@ class Solver {
     std::vector<std::future<Group>> groups;
     for (const Sight& sight : sights_) {
       groups.push_back(std::async(std::launch::async, [this, &sight, first_view, end_view] {
-        Group group;
-        group.first_view = first_view;
-        group.on_device.binnings = sight.binnings;
-        group.on_device.seen = !is_source(sight);
-        for (std::size_t v = first_view; v < end_view; ++v) add_view(sight, v, &group);
-        return group;
+        return group_of(plan_, geometry_, sights_, sight, first_view, end_view);
       }));
     }
     return groups;
-  }
-
-  bool is_source(const Sight& sight) const { return &sight == &sights_.front(); }
-
-  vec3 direction_of(const Sight& sight, std::size_t v) const {
-    if (is_source(sight)) return v3_load(plan_.beams.views[v].toward);
-    return v3_load(plan_.beams.connections[v * plan_.traits.connections + sight.connection()].direction);
-  }
-
-  void add_view(const Sight& sight, std::size_t v, Group* group) const {
-    const ClrayView& view = plan_.beams.views[v];
-    const vec3 source = v3_load(view.toward);
-    group->beams.push_back(beam_faces(
-        geometry_, plan_.materials, plan_.motions[v],
-        {direction_of(sight, v), source, v3_load(plan_.constants.reference), static_cast<std::uint32_t>(v)}));
-    const BeamFaces& beam = group->beams.back();
-    group->offsets.push_back(group->on_device.faces.size());
-    const std::size_t lanes = plan_.request.lanes.size();
-    const bool seen = !sight.connections.empty();
-    for (std::size_t k = 0; k < beam.faces.size(); ++k) {
-      ClrayFace face = beam.faces[k];
-      face.bin_scale = view.weight_scale / plan_.beams.area_m2[v];
-      face.carried = is_source(sight) && wanted_elsewhere(beam, k, v) ? 1u : 0u;
-      group->on_device.faces.push_back(face);
-      for (std::size_t l = 0; l < lanes; ++l)
-        group->on_device.weights.push_back(seen ? weight(beam, k, l, source, beam.toward) : 0.0);
-    }
-  }
-
-  /// Radiant intensity over irradiance of a face in a lane, per area across its beam: f·mu_i of a beam toward the
-  /// observer, and in that of the source f·mu_o, which is the same where both are one.
-  double weight(const BeamFaces& beam, std::size_t face, std::size_t lane, const vec3& source, const vec3& to) const {
-    const FaceOrigin& origin = beam.origins[face];
-    const vec3 n = v3_load(beam.faces[face].normal);
-    const double mu_i = v3_dot(n, source), mu_o = v3_dot(n, to);
-    if (!origin.lit || !plan_.traits.connect || !(mu_i > 0.0) || !(mu_o > 0.0)) return 0.0;
-    const double f_mu_o =
-        surface_weight(plan_.materials.of(lane, origin.material), plan_.materials.tables, n, source, to);
-    const bool monostatic = mu_i == mu_o;
-    return monostatic ? f_mu_o : f_mu_o * (mu_i / mu_o);
-  }
-
-  /// Whether an observer elsewhere may see a lit face.
-  bool wanted_elsewhere(const BeamFaces& beam, std::size_t face, std::size_t v) const {
-    for (std::size_t s = 1; s < sights_.size(); ++s) {
-      const vec3 to = direction_of(sights_[s], v);
-      for (std::size_t l = 0; l < plan_.request.lanes.size(); ++l) {
-        if (weight(beam, face, l, beam.toward, to) != 0.0) return true;
-      }
-    }
-    return false;
   }
 
   bool solve_lit(Group* group) {
@@ -177,7 +109,7 @@ class Solver {
     pieces.reserve(lit.size());
     for (const ClrayPiece& piece : lit) {
       const std::int64_t there = carrier.seen(piece.face);
-      if (there >= 0 && shines(group, group.offsets[k] + static_cast<std::size_t>(there)))
+      if (there >= 0 && group.shines(group.offsets[k] + static_cast<std::size_t>(there)))
         pieces.push_back(carrier.carry(piece));
     }
     return pieces;
@@ -219,14 +151,8 @@ class Solver {
     return go;
   }
 
-  /// Whether a face sends light to an observer at the beam's end.
-  bool shines(const Group& group, std::size_t face) const {
-    const std::size_t lanes = plan_.request.lanes.size();
-    const double* weights = group.on_device.weights.data() + face * lanes;
-    return std::any_of(weights, weights + lanes, [](double w) { return w != 0.0; });
-  }
   bool wanted(const Group& group, std::size_t face) const {
-    return all_faces_ || group.on_device.faces[face].carried != 0 || shines(group, face);
+    return all_faces_ || group.on_device.faces[face].carried != 0 || group.shines(face);
   }
 
   static std::uint32_t add_tile(const Group& group, std::size_t k, const TileFaces& tile, ItemBatch* batch) {
@@ -263,7 +189,7 @@ class Solver {
       const BeamFaces& beam = group.beams[k];
       const double* weights = group.on_device.weights.data() + group.offsets[k] * plan_.request.lanes.size();
       const SolvedView solved{group.first_view + k,
-                              is_source(sight),
+                              is_source(sights_, sight),
                               sight.connections,
                               beam,
                               group.visible.data() + group.offsets[k],
@@ -272,25 +198,12 @@ class Solver {
         const auto add = room_of(d).solved;
         if (add != nullptr) add({plan_, d, geometry_, solved}, &sums_);
       }
-      if (!is_source(sight)) continue;
+      if (!is_source(sights_, sight)) continue;
       sums_.points[solved.view] = 1;
       const double unit = plan_.beams.area_m2[solved.view] / plan_.constants.unit_scale;
       for (std::size_t f = 0; f < beam.faces.size(); ++f)
         sums_.area_rounding[solved.view] += solved.visible[f].rounding_m2 + unit;
     }
-  }
-
-  static VisibleFace visible_face(const ClrayFace& face, const i64* sum) {
-    const double area = 1.0 / face.area_scale, length = area / face.inv_length, path = area / face.inv_path;
-    const auto number = [&](int k) { return static_cast<double>(sum[k]); };
-    VisibleFace v;
-    v.area_m2 = number(CLRAY_FACE_AREA) * area;
-    v.x_m3 = number(CLRAY_FACE_X) * length;
-    v.y_m3 = number(CLRAY_FACE_Y) * length;
-    v.path_m3 = number(CLRAY_FACE_PATH) * path;
-    v.path2_m4 = number(CLRAY_FACE_PATH2) * path / face.inv_path;
-    v.rounding_m2 = (number(CLRAY_FACE_LOST) + number(CLRAY_FACE_PIECES)) * area;
-    return v;
   }
 
   const PassPlan& plan_;
