@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // See end_methods.hpp: what clray itself offers.
+#include <algorithm>
+#include <iterator>
+
 #include "clray/trace.hpp"
 #include "end_methods.hpp"
 #include "support/scenes.hpp"
@@ -16,11 +19,13 @@ Answer answer_of(const clray::Result& result) {
 }  // namespace
 
 std::vector<EndMethod> clray_methods(const EndCase& which, const std::vector<int>& log2_rays, clray::Device& device) {
-  const auto points = [&which, &device](int effort, std::uint64_t seed) {
-    clray::Scene scene = which.scene;
-    scene.trace.method = clray::Method::points;
-    clray_test::rays(scene, effort, seed);
-    return answer_of(clray::trace(scene, device));
+  const auto sampled = [&which, &device](clray::Method method) {
+    return [&which, &device, method](int effort, std::uint64_t seed) {
+      clray::Scene scene = which.scene;
+      clray_test::rays(scene, effort, seed);
+      scene.trace.method = method;
+      return answer_of(clray::trace(scene, device));
+    };
   };
   const auto exact = [&which, &device](int, std::uint64_t) {
     clray::Scene scene = which.scene;
@@ -28,7 +33,11 @@ std::vector<EndMethod> clray_methods(const EndCase& which, const std::vector<int
     scene.trace.rays = 0;
     return answer_of(clray::trace(scene, device));
   };
-  return {{"clray, exact", true, {0}, exact}, {"clray, points", false, log2_rays, points}};
+  std::vector<int> log2_points;  // of tiles: more are dearer than the exact pulse
+  std::copy_if(log2_rays.begin(), log2_rays.end(), std::back_inserter(log2_points), [](int k) { return k <= 22; });
+  return {{"clray, exact", true, {0}, exact},
+          {"clray, tiles", false, log2_points, sampled(clray::Method::tiles)},
+          {"clray, points", false, log2_rays, sampled(clray::Method::points)}};
 }
 
 }  // namespace clray_bench

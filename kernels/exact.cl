@@ -21,3 +21,14 @@ __kernel void clray_exact(CLRAY_EXACT_BUFFERS(CLRAY_ARGUMENT) u32 seen, u32 coun
   unfinished[1u + 2u * at] = item;
   unfinished[2u + 2u * at] = done;
 }
+
+#if CLRAY_TILES
+#include "exact/sample.cl"
+
+__kernel void clray_sample(CLRAY_SAMPLE_BUFFERS(CLRAY_ARGUMENT) u32 count) {
+  const u32 item = (u32)get_global_id(0);
+  if (item >= count) return;
+  const Sampled g = {CLRAY_SAMPLE_BUFFERS(CLRAY_VALUE)};
+  sample_item(&g, item);
+}
+#endif

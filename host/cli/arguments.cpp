@@ -216,7 +216,10 @@ void parse_values(Arguments& a, const Texts& t) {
   a.netcdf = t.format == "netcdf";
   if (t.method) {
     const std::string word = for_key("method", *t.method, *t.method, "--method");
-    a.method = word == "exact" ? Method::exact : word == "points" ? Method::points : Method::automatic;
+    a.method = word == "exact"    ? Method::exact
+               : word == "tiles"  ? Method::tiles
+               : word == "points" ? Method::points
+                                  : Method::automatic;
   }
   if (t.sampler) a.sobol = for_key("sampler", *t.sampler, *t.sampler, "--sampler") == "sobol";
 }

@@ -23,6 +23,7 @@ namespace {
 thread_local ExactNumbers host_numbers;
 
 #include "exact/leaf.cl"
+#include "exact/sample.cl"
 
 }  // namespace
 
@@ -56,6 +57,41 @@ void exact_item_on_host(const ExactBuffers& buffers, const ExactNumbers& numbers
     if (stack.size() >= kMostWaiting) throw Error(ErrorCode::bug, "a face falls into too many pieces", "exact pass");
     stack.resize(2 * stack.size());
   }
+}
+
+void covered_tile_on_host(const ExactBuffers& buffers, const ExactNumbers& numbers, std::uint32_t tile,
+                          std::uint32_t face) {
+  host_numbers = numbers;
+  Exact g{};
+#define CLRAY_TAKE(type, name) g.name = buffers.name;
+  CLRAY_EXACT_BUFFERS(CLRAY_TAKE)
+#undef CLRAY_TAKE
+  const ClrayTile& t = g.tiles[tile];
+  Fragment f;
+  f.corners = 0;
+  fragment_add(&f, t.x0, t.y0);
+  fragment_add(&f, t.x1, t.y0);
+  fragment_add(&f, t.x1, t.y1);
+  fragment_add(&f, t.x0, t.y1);
+  fragment_close(&f);
+  const f64 area = 0.5 * fragment_area2(&f);
+  Kept kept{};
+  keep_piece(g.faces + face, &f, area, &kept);
+  add_to_bins(&g, face, &f, area);
+  for (u32 k = 0; k < CLRAY_FACE_SUMS; ++k) atomic_add_i64(g.sums + face * CLRAY_FACE_SUMS + k, kept.sum[k]);
+}
+
+std::size_t sample_items(std::size_t tiles, std::uint32_t replicates) {
+  return tiles * ((replicates + CLRAY_TOGETHER - 1u) / CLRAY_TOGETHER);
+}
+
+void sample_item_on_host(const SampleBuffers& buffers, const ExactNumbers& numbers, std::uint32_t item) {
+  host_numbers = numbers;
+  Sampled g{};
+#define CLRAY_TAKE(type, name) g.name = buffers.name;
+  CLRAY_SAMPLE_BUFFERS(CLRAY_TAKE)
+#undef CLRAY_TAKE
+  sample_item(&g, item);
 }
 
 }  // namespace clray

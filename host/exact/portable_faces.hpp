@@ -21,10 +21,18 @@ struct ExactBuffers {
 #undef CLRAY_MEMBER
 };
 
+/// Those of sample_item().
+struct SampleBuffers {
+#define CLRAY_MEMBER(type, name) type* name = nullptr;
+  CLRAY_SAMPLE_BUFFERS(CLRAY_MEMBER)
+#undef CLRAY_MEMBER
+};
+
 /// What a device's program is built with.
 struct ExactNumbers {
   std::uint32_t lanes = 1, binnings = 0;
   bool from_source = true;  ///< an observer is at the source: what is lit is seen
+  bool tiles = false;       ///< tiles that are not solved are sampled
   bool carry = false;       ///< observers are elsewhere: lit pieces are carried to their views
 };
 
@@ -33,5 +41,15 @@ struct ExactNumbers {
 /// Error(bug) where the fragments that wait grow beyond all bounds.
 void exact_item_on_host(const ExactBuffers& buffers, const ExactNumbers& numbers, bool seen, std::uint32_t item,
                         std::uint32_t skip, std::vector<ClrayPiece>* lit);
+
+/// A tile that a face covers: all of it is seen.
+void covered_tile_on_host(const ExactBuffers& buffers, const ExactNumbers& numbers, std::uint32_t tile,
+                          std::uint32_t face);
+
+/// How many work-items sample so many tiles.
+std::size_t sample_items(std::size_t tiles, std::uint32_t replicates);
+
+/// The points of some replicates in one tile that is not solved, as a work-item of a device takes them.
+void sample_item_on_host(const SampleBuffers& buffers, const ExactNumbers& numbers, std::uint32_t item);
 
 }  // namespace clray

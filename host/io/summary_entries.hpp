@@ -43,8 +43,9 @@ inline Json method_of(double rounding_bound) {
   return {{"method", "exact"}, {"rounding_bound", rounding_bound}};
 }
 
-/// The same of A, whose first bounce alone may be exact.
+/// The same of A, which tiles may have found, or whose first bounce alone may be exact.
 inline Json method_of(const Estimate& intensity) {
+  if (intensity.tiles) return {{"method", "tiles"}};
   if (!intensity.partly_exact()) return method_of(intensity.rounding_bound);
   return {{"method", "exact first bounce"},
           {"rounding_bound", intensity.rounding_bound},

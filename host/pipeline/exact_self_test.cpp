@@ -15,6 +15,7 @@
 #include "exact/beam_faces.hpp"
 #include "exact/portable_faces.hpp"
 #include "pipeline/exact_device.hpp"
+#include "pipeline/sample_device.hpp"
 #include "shared/philox.h"
 
 namespace clray {
@@ -120,12 +121,8 @@ Solved compared(OpenedDevice& opened, const cl::Kernel& kernel, const FaceGroup&
   return right;
 }
 
-}  // namespace
-
-void run_exact_self_test(OpenedDevice& opened, const std::string& source, const cl::Kernel& kernel,
-                         const ExactNumbers& numbers) {
-  const std::string what = "solved\n" + source;
-  if (remembered(opened, what)) return;
+/// The soup with weights, windows and the two tiles that it is solved in.
+FaceGroup test_group(const ExactNumbers& numbers) {
   FaceGroup group;
   group.faces = soup();
   for (std::size_t k = 0; k < group.faces.size() * numbers.lanes; ++k)
@@ -133,10 +130,25 @@ void run_exact_self_test(OpenedDevice& opened, const std::string& source, const 
   const std::uint64_t row = static_cast<std::uint64_t>(numbers.lanes) * (kBins + 2);
   for (std::uint32_t n = 0; n < numbers.binnings; ++n)
     group.binnings.push_back({-1.5, kBins / (3.0 + n), n * row, kBins});
-  ItemBatch batch;
+  return group;
+}
+
+std::vector<ClrayTile> test_tiles() {
   const BeamFrame frame = test_frame();
-  batch.tiles = {{-1.0, 0.1, -1.0, 1.0, frame.size, frame.margin, 0, kFaces},
-                 {0.1, 1.0, -1.0, 1.0, frame.size, frame.margin, 0, kFaces}};
+  return {{-1.0, 0.1, -1.0, 1.0, frame.size, frame.margin, 0, kFaces},
+          {0.1, 1.0, -1.0, 1.0, frame.size, frame.margin, 0, kFaces}};
+}
+
+}  // namespace
+
+void run_exact_self_test(OpenedDevice& opened, const std::string& source, const cl::Kernel& kernel,
+                         const ExactNumbers& numbers) {
+  const std::string what = "solved\n" + source;
+  if (remembered(opened, what)) return;
+  FaceGroup group = test_group(numbers);
+  const std::uint64_t row = static_cast<std::uint64_t>(numbers.lanes) * (kBins + 2);
+  ItemBatch batch;
+  batch.tiles = test_tiles();
   for (std::uint32_t f = 0; f < kFaces; ++f) {
     const ClrayFace& face = group.faces[f];
     batch.lists.push_back({{face.box[0], face.box[1], face.box[2], face.box[3]}, face.nearest, f, 0});
@@ -157,6 +169,46 @@ void run_exact_self_test(OpenedDevice& opened, const std::string& source, const 
     }
     compared(opened, kernel, group, batch, numbers, bins);
   }
+  remember(opened, what);
+}
+
+void run_sample_self_test(OpenedDevice& opened, const std::string& source, const cl::Kernel& kernel,
+                          const ExactNumbers& numbers) {
+  const std::string what = "sampled\n" + source;
+  if (remembered(opened, what)) return;
+  const FaceGroup group = test_group(numbers);
+  SampledTiles tiles;
+  tiles.tiles = test_tiles();
+  for (std::uint32_t f = 0; f < kFaces; ++f) tiles.listed.push_back(f);
+  constexpr std::uint32_t kReplicates = 60;
+  ClraySampling sampling{};
+  sampling.inv_path_per_m = 0.25;
+  sampling.key0 = 0x74u;
+  sampling.key1 = 0x65737453u;
+  sampling.replicates = kReplicates;
+  const std::uint64_t bins = static_cast<std::uint64_t>(numbers.binnings) * numbers.lanes * (kBins + 2) * kReplicates;
+  std::vector<double> values(tiles.tiles.size() * kReplicates);
+  std::vector<i64> sums(std::size_t{3} * numbers.lanes * kReplicates), histogram(bins);
+  std::vector<u32> hits(bins);
+  SampleBuffers host{
+      group.faces.data(), group.weights.data(), tiles.tiles.data(), tiles.listed.data(), group.binnings.data(),
+      &sampling,          values.data(),        sums.data(),        histogram.data(),    hits.data()};
+  sampling.adds = 1;
+  for (std::uint32_t k = 0; k < sample_items(tiles.tiles.size(), kReplicates); ++k)
+    sample_item_on_host(host, numbers, k);
+  SampleDevice device(opened, kernel, numbers);
+  device.begin_view(group);
+  const auto bits = [](const std::vector<double>& x) {
+    std::vector<i64> out(x.size());
+    std::memcpy(out.data(), x.data(), x.size() * sizeof(double));
+    return out;
+  };
+  const SampleSums found = device.sample(tiles, sampling);
+  compare(opened, "value", bits(values), bits(found.values));
+  compare(opened, "sampled sum", sums, found.moments);
+  compare(opened, "sampled bin", histogram, found.bins);
+  compare(opened, "hit", std::vector<i64>(hits.begin(), hits.end()),
+          std::vector<i64>(found.hits.begin(), found.hits.end()));
   remember(opened, what);
 }
 

@@ -14,4 +14,8 @@ namespace clray {
 void run_exact_self_test(OpenedDevice& opened, const std::string& source, const cl::Kernel& kernel,
                          const ExactNumbers& numbers);
 
+/// The same of its sampling.
+void run_sample_self_test(OpenedDevice& opened, const std::string& source, const cl::Kernel& kernel,
+                          const ExactNumbers& numbers);
+
 }  // namespace clray

@@ -68,6 +68,7 @@ ExactNumbers exact_numbers(const PassPlan& plan) {
   for (const PassDetector& d : plan.detectors) numbers.binnings += room_of(d).binning != nullptr;
   const std::vector<Sight> sights = sights_of(plan);
   numbers.from_source = !sights.front().connections.empty();
+  numbers.tiles = plan.request.tiles();
   numbers.carry = sights.size() > 1;
   return numbers;
 }

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "clray/error.hpp"
 #include "exact/beam_faces.hpp"
@@ -18,6 +19,7 @@ namespace {
 // Seconds on one core, of a face of a view and of a ray, as a grid of 614 Sun directions on topex.obj took
 // (docs/exact.md). Their ratio decides.
 constexpr double kSecondsPerFace = 7e-6, kSecondsPerRay = 1.4e-6;
+constexpr double kSecondsPerCutFace = 2.8e-6, kSecondsPerTile = 5e-6, kTilesOfPercent = 4000.0;
 constexpr double kMuchDearer = 10.0;
 
 /// Whether a detector's sums can be made from visible faces. What no sum of its own has reads those of others.
@@ -86,13 +88,45 @@ double seconds_to_solve(const Geometry& geometry, std::size_t times) {
   return kSecondsPerFace * static_cast<double>(geometry.primitives.size()) * static_cast<double>(times);
 }
 
+/// What tiles take to reach the target, s on one core. The error falls with the power -1.5 of their number; the rest
+/// are figures of docs/exact.md.
+double seconds_of_tiles(const Scene& scene, const Geometry& geometry, std::size_t views) {
+  const double target = scene.trace.target_error_percent / 100.0;
+  const double tiles =
+      std::max(static_cast<double>(kFirstPoints), kTilesOfPercent * std::pow(0.01 / target, 2.0 / 3.0));
+  const double faces = kSecondsPerCutFace * static_cast<double>(geometry.primitives.size());
+  return (faces + kSecondsPerTile * tiles) * static_cast<double>(views);
+}
+
 /// What as many rays take as are traced by default.
 double seconds_of_rays(std::size_t views, int replicates) {
   const double least = static_cast<double>(kFirstPoints) * replicates * static_cast<double>(views);
   return kSecondsPerRay * std::max(static_cast<double>(kDefaultRays), least);
 }
 
+/// Why tiles cannot find a detector's numbers; empty: they can.
+std::string obstacle_to_tiles(const Scene& scene, const Geometry& geometry, const DetectorSpec& detector) {
+  if (!table_row("detector", detector.kind).connects) return detector.kind + " is not of light toward observers";
+  if (sights_of(scene, detector) > 1) return "an observer is not at the source";
+  const std::string sampled = rest(scene, detector, &geometry);
+  return sampled.empty() ? "" : "rays must find " + sampled;
+}
+
 }  // namespace
+
+std::string method_name(PassMethod how) {
+  switch (how) {
+    case PassMethod::points:
+      return "points";
+    case PassMethod::first_exact:
+      return "first bounce exact";
+    case PassMethod::tiles:
+      return "tiles";
+    case PassMethod::exact:
+      break;
+  }
+  return "exact";
+}
 
 bool may_need_no_rays(const Scene& scene) {
   if (scene.trace.method == Method::points || scene.trace.rays != 0) return false;
@@ -106,12 +140,14 @@ bool may_need_no_rays(const Scene& scene) {
 MethodChoice choose_method(const Scene& scene, const Geometry& geometry, const DetectorSpec& detector,
                            std::size_t views) {
   const TraceOptions& t = scene.trace;
-  if (t.method == Method::points) return {false, "points are asked for"};
+  const auto points = [](const std::string& because) { return MethodChoice{PassMethod::points, because}; };
+  if (t.method == Method::points) return points("asked for");
   std::string why = obstacle(scene, detector);
   if (why.empty() && !made_of_polygons(geometry)) why = "a curved shape is in the scene";
   const std::string sampled = why.empty() ? rest(scene, detector, &geometry) : "";
   const auto solved = [&](const std::string& because) {
-    return MethodChoice{sampled.empty(), because + (sampled.empty() ? "" : "; rays find " + sampled), !sampled.empty()};
+    return sampled.empty() ? MethodChoice{PassMethod::exact, because}
+                           : MethodChoice{PassMethod::first_exact, because + "; rays find " + sampled};
   };
   if (t.method == Method::exact) {
     if (!why.empty()) throw Error(ErrorCode::input, "method = \"exact\" is not possible: " + why, "trace.method");
@@ -119,15 +155,26 @@ MethodChoice choose_method(const Scene& scene, const Geometry& geometry, const D
       throw Error(ErrorCode::input, "method = \"exact\" traces no rays here: leave rays out", "trace.rays");
     return solved("asked for");
   }
-  if (t.rays != 0) return {false, fmt::format("rays = {} are asked for", t.rays)};
-  if (!why.empty()) return {false, why};
+  const std::string no_tiles = why.empty() ? obstacle_to_tiles(scene, geometry, detector) : why;
+  const bool connects = table_row("detector", detector.kind).connects;
+  if (t.method == Method::tiles && connects) {
+    if (!no_tiles.empty())
+      throw Error(ErrorCode::input, "method = \"tiles\" is not possible: " + no_tiles, "trace.method");
+    return {PassMethod::tiles, "asked for"};
+  }
+  if (t.rays != 0) return points(fmt::format("rays = {} are asked for", t.rays));
+  if (!why.empty()) return points(why);
   const double seconds = seconds_to_solve(geometry, views * sights_of(scene, detector));
+  if (no_tiles.empty() && t.target_error_percent > 0.0 && seconds_of_tiles(scene, geometry, views) < seconds)
+    return {PassMethod::tiles, fmt::format("they reach {:g} % sooner than all is solved", t.target_error_percent)};
   // An exact pass that time cuts off has no result.
-  if (t.time_limit_s > 0.0 && seconds > 0.5 * t.time_limit_s)
-    return {false, fmt::format("solving it may take longer than the time limit of {:g} s", t.time_limit_s)};
+  if (t.time_limit_s > 0.0 && seconds > 0.5 * t.time_limit_s) {
+    const std::string late = fmt::format("solving it may take longer than the time limit of {:g} s", t.time_limit_s);
+    return no_tiles.empty() ? MethodChoice{PassMethod::tiles, late} : points(late);
+  }
   if (seconds > kMuchDearer * seconds_of_rays(views, t.replicates)) {
-    return {false, fmt::format("{} faces in {} views would take much longer than rays; --method exact solves them",
-                               geometry.primitives.size(), views)};
+    return points(fmt::format("{} faces in {} views would take much longer than rays; --method exact solves them",
+                              geometry.primitives.size(), views));
   }
   return solved("one reflection from flat faces");
 }

@@ -9,12 +9,22 @@
 
 namespace clray {
 
-/// How a detector's numbers come about.
-struct MethodChoice {
-  bool exact = false;  ///< all are solved
-  std::string why;
-  bool first_exact = false;  ///< not all, but the first bounce is solved: rays find the rest
+/// How numbers come about.
+enum class PassMethod {
+  points,       ///< rays find all of them
+  first_exact,  ///< the first bounce is solved, rays find the rest
+  tiles,        ///< tiles that one face covers are solved, points see what is in the others: no rays
+  exact         ///< all are solved: no points, one replicate
 };
+
+/// How those of a detector do.
+struct MethodChoice {
+  PassMethod how = PassMethod::points;
+  std::string why;
+};
+
+/// "points", "first bounce exact", "tiles" or "exact".
+std::string method_name(PassMethod how);
 
 /// Whether all numbers of a scene may turn out to be exact, so that no trees are needed; only its faces are not asked.
 bool may_need_no_rays(const Scene& scene);

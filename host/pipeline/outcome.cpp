@@ -138,7 +138,8 @@ void order_results(const Scene& scene, Result* result) {
 
 std::uint64_t digest_of(std::uint64_t state, const PassPlan& plan, const Sums& sums) {
   if (plan.first) state = digest_of(state, plan.first->plan, plan.first->sums);
-  if (plan.request.exact) state = fnv1a(state, "exact", 5);
+  if (plan.request.exact()) state = fnv1a(state, "exact", 5);
+  if (plan.request.tiles()) state = fnv1a(state, "tiles", 5);
   for (std::size_t v = 0; v < sums.points.size(); ++v) {
     const std::uint64_t head[3] = {static_cast<std::uint64_t>(plan.scales.views[v].weight_bits),
                                    plan.request.replicates, sums.points[v]};

@@ -84,7 +84,7 @@ struct Step {
 
 class PassDriver {
  public:
-  PassDriver(const Geometry& geometry, const PassPlan& plan, PassRunner& runner, const TraceOptions& options,
+  PassDriver(const Geometry& geometry, const PassPlan& plan, PointRunner& runner, const TraceOptions& options,
              const TraceHooks& hooks, double time_left_s)
       : geometry_(geometry),
         plan_(plan),
@@ -249,7 +249,7 @@ class PassDriver {
 
   const Geometry& geometry_;
   const PassPlan& plan_;
-  PassRunner& runner_;
+  PointRunner& runner_;
   const TraceHooks& hooks_;
   std::vector<Course> courses_;  // of each view
   std::vector<std::uint32_t> confirmed_epochs_;
@@ -262,7 +262,7 @@ class PassDriver {
 
 }  // namespace
 
-PassOutcome drive_pass(const Geometry& geometry, const PassPlan& plan, PassRunner& runner, const TraceOptions& options,
+PassOutcome drive_pass(const Geometry& geometry, const PassPlan& plan, PointRunner& runner, const TraceOptions& options,
                        const TraceHooks& hooks, double time_left_s) {
   return PassDriver(geometry, plan, runner, options, hooks, time_left_s).run();
 }

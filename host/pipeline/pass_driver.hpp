@@ -15,7 +15,7 @@ namespace clray {
 
 /// Traces a pass until the options say stop. `time_left_s`: of the run's time limit; 0: there is none. Throws
 /// Error(usage) for more rays than can be numbered, Error(device).
-PassOutcome drive_pass(const Geometry& geometry, const PassPlan& plan, PassRunner& runner, const TraceOptions& options,
+PassOutcome drive_pass(const Geometry& geometry, const PassPlan& plan, PointRunner& runner, const TraceOptions& options,
                        const TraceHooks& hooks, double time_left_s);
 
 /// Solves an exact pass: there is one step, and it ends whole or, where time or an interrupt ends it, without sums.

@@ -2,6 +2,7 @@
 // Which passes a scene takes: detectors that can share rays share a pass, and so do lanes (variants and bands).
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "beam/illumination.hpp"
 #include "pipeline/method.hpp"
@@ -60,47 +61,48 @@ class Requests {
   // same lanes, and one for those that take a wide band in parts. What can be solved needs no rays and goes apart.
   // Rays whose first hits are not connected serve detectors that have these solved, and those that connect nothing.
   void beam() {
-    PassRequest r = request("trace");
-    for (std::size_t o = 0; o < scene_.observers.size(); ++o) r.observers.push_back(static_cast<int>(o));
-    PassRequest solved = exact(r), rest = r;
-    PassRequest parts = r, solved_parts = solved;
+    PassRequest all = request("trace");
+    for (std::size_t o = 0; o < scene_.observers.size(); ++o) all.observers.push_back(static_cast<int>(o));
     std::vector<MethodChoice> choices(scene_.detectors.size());
     bool first_connected = false;
     for (std::size_t d = 0; d < scene_.detectors.size(); ++d) {
       if (!row(d).beam || is_grid(d)) continue;
       choices[d] = choose_method(scene_, geometry_, scene_.detectors[d], instants_.size());
-      first_connected = first_connected || (choices[d].first_exact && row(d).connects);
+      first_connected = first_connected || (choices[d].how == PassMethod::first_exact && row(d).connects);
     }
+    // Those that are solved first; of each method those in parts last.
+    std::map<std::pair<int, bool>, PassRequest> requests;
     for (std::size_t d = 0; d < scene_.detectors.size(); ++d) {
       if (!row(d).beam || is_grid(d)) continue;
       const bool in_parts = lanes_of(scene_, row(d)).front().share < 1.0;
-      const bool joins = row(d).connects ? choices[d].first_exact : first_connected;
-      PassRequest& points = in_parts ? parts : joins ? rest : r;
-      add_detector(d, choices[d], choices[d].exact ? (in_parts ? solved_parts : solved) : points);
+      if (in_parts && choices[d].how == PassMethod::tiles) choices[d].how = PassMethod::points;
+      const PassMethod how = choices[d].how;
+      const bool joins = row(d).connects ? how == PassMethod::first_exact : first_connected;
+      const int rank = how == PassMethod::exact ? 0 : how == PassMethod::tiles ? 1 : joins && !in_parts ? 2 : 3;
+      PassRequest& request = requests.try_emplace({rank, in_parts}, by(how, all)).first->second;
+      add_detector(d, choices[d], request);
     }
-    parts.apart = !r.detectors.empty() || !rest.detectors.empty() || !solved.detectors.empty();
-    solved_parts.apart = parts.apart;
-    for (const PassRequest& each : {solved, solved_parts, rest, r, parts}) {
-      if (!each.detectors.empty()) add(each, kMostLanes);
+    const bool apart = std::any_of(requests.begin(), requests.end(), [](const auto& r) { return !r.first.second; });
+    for (auto& [key, request] : requests) {
+      request.apart = key.second && apart;
+      add(request, kMostLanes);
     }
   }
 
-  static PassRequest exact(PassRequest request) {
-    request.exact = true;
-    request.replicates = 1;
-    request.phase = "exact";
+  static PassRequest by(PassMethod how, PassRequest request) {
+    if (how == PassMethod::first_exact) return request;
+    request.how = how;
+    request.one_bounce = how == PassMethod::tiles;
+    if (how == PassMethod::exact) request.replicates = 1;
+    if (how == PassMethod::exact) request.phase = "exact";
     return request;
   }
 
   void add_detector(std::size_t d, const MethodChoice& choice, PassRequest& request) const {
     const DetectorSpec& spec = scene_.detectors[d];
     request.detectors.push_back(static_cast<int>(d));
-    if (choice.first_exact) request.first_exact.push_back(static_cast<int>(d));
-    request.method.push_back(shown_name(spec) +
-                             (choice.exact         ? ", exact: "
-                              : choice.first_exact ? ", first bounce exact: "
-                                                   : ", points: ") +
-                             choice.why);
+    if (choice.how == PassMethod::first_exact) request.first_exact.push_back(static_cast<int>(d));
+    request.method.push_back(shown_name(spec) + ", " + method_name(choice.how) + ": " + choice.why);
   }
 
   void grid(std::size_t d) {
@@ -113,7 +115,7 @@ class Requests {
     r.first_orientation = next_orientation_;
     next_orientation_ += r.orientations.size();
     const MethodChoice choice = choose_method(scene_, geometry_, spec, r.orientations.size());
-    if (choice.exact) r = exact(r);
+    r = by(choice.how, r);
     add_detector(d, choice, r);
     add(r, kMostLanes);
   }

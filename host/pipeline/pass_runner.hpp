@@ -15,20 +15,32 @@ namespace clray {
 
 class DevicePass;
 
-/// One program and its buffers on every opened device.
-class PassRunner {
+/// Finds the sums of points.
+class PointRunner {
  public:
-  PassRunner(Device& device, const PassPlan& plan, const Geometry& geometry, const TraceOptions& options);
-  ~PassRunner();
+  virtual ~PointRunner() = default;
 
-  /// Adds points up to `points` of epoch `epoch` to *sums for `views` (ascending), which have as many so far, all of
-  /// them. `keep_going` is asked between launches with the share done; when it says no, returns false and *sums is as
-  /// it was.
-  bool run(Sums* sums, const std::vector<std::uint32_t>& views, std::uint64_t points, std::uint32_t epoch,
-           const std::function<bool(double)>& keep_going);
+  /// Brings *sums to `points` of epoch `epoch` for `views` (ascending), which have as many so far, all of them.
+  /// `keep_going` is asked now and then with the share done; when it says no, returns false and *sums is as it was.
+  virtual bool run(Sums* sums, const std::vector<std::uint32_t>& views, std::uint64_t points, std::uint32_t epoch,
+                   const std::function<bool(double)>& keep_going) = 0;
 
   /// Seconds spent building programs.
   double compile_seconds() const { return compile_seconds_; }
+
+ protected:
+  double compile_seconds_ = 0.0;
+};
+
+/// Traces points as rays: one program and its buffers on every opened device.
+class PassRunner : public PointRunner {
+ public:
+  PassRunner(Device& device, const PassPlan& plan, const Geometry& geometry, const TraceOptions& options);
+  ~PassRunner() override;
+
+  /// Adds the points that are missing.
+  bool run(Sums* sums, const std::vector<std::uint32_t>& views, std::uint64_t points, std::uint32_t epoch,
+           const std::function<bool(double)>& keep_going) override;
 
  private:
   void drain(Sums* sums);
@@ -38,7 +50,6 @@ class PassRunner {
   const PassPlan& plan_;
   const TraceOptions& options_;
   std::vector<std::unique_ptr<DevicePass>> devices_;
-  double compile_seconds_ = 0.0;
 };
 
 }  // namespace clray

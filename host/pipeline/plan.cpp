@@ -27,7 +27,7 @@ PathTraits traits_of(const Scene& scene, const PassRequest& request, const Mater
     t.connect = t.connect || row.connects;
     followed = followed || row.scatters;
   }
-  t.scatter = followed || (materials.delta && t.connect && !request.exact);
+  t.scatter = followed || (materials.delta && t.connect && !request.without_rays());
   return t;
 }
 
@@ -56,7 +56,7 @@ Scales scales_of(const Scene& scene, const Geometry& geometry, const PassPlan& p
     const double bound = first_bound(plan, v);
     int exponent = 0;
     if (bound > 0.0) std::frexp(bound * (1.0 + 0x1p-20), &exponent);
-    view.weight_bits = (plan.request.exact ? kExactSumBits : kSumBits) - exponent;
+    view.weight_bits = (plan.request.without_rays() ? kExactSumBits : kSumBits) - exponent;
     const auto [low, high] = plan.paths.view(v);
     view.path_middle_m = 0.5 * low + 0.5 * high;
     view.path_half_m = std::max(0.5 * (high - low), std::ldexp(geometry.radius, -10)) * (1.0 + 0x1p-20);
@@ -81,7 +81,7 @@ void set_scales(const Scales& scales, std::vector<ClrayView>* views) {
 
 ClrayPass constants_of(const Scene& scene, const PassPlan& plan) {
   ClrayPass k{};
-  k.unit_scale = std::ldexp(1.0, plan.request.exact ? kExactUnitBits : CLRAY_UNIT_BITS);
+  k.unit_scale = std::ldexp(1.0, plan.request.without_rays() ? kExactUnitBits : CLRAY_UNIT_BITS);
   for (int i = 0; i < 3; ++i) k.reference[i] = scene.reference_point[i];
   k.inv_lever_per_m = 1.0 / plan.scales.lever_m;
   k.key0 = static_cast<std::uint32_t>(scene.trace.seed);
@@ -107,7 +107,7 @@ std::vector<double> settings_of(const Scene& scene, const Geometry& geometry, co
 /// The detectors of a pass, in the order of detector.def: those that were asked for, and the inner ones that they read.
 /// The generic program also has every detector that follows light.
 std::vector<PassDetector> detectors_of(const Scene& scene, const Geometry& geometry, const PassPlan& plan) {
-  const bool all = !scene.trace.specialise && !plan.request.exact, pixels = plan.request.pixels;
+  const bool all = !scene.trace.specialise && !plan.request.without_rays(), pixels = plan.request.pixels;
   std::vector<PassDetector> detectors;
   for (std::size_t r = 0; r < table("detector").size(); ++r) {
     const TableRow& row = table("detector")[r];
@@ -156,7 +156,8 @@ SumLayout layout_of(const PassPlan& plan, std::vector<PassDetector>* detectors) 
 /// The exact pass of a request's first bounce, for those of its detectors that have one.
 PassRequest first_bounce_of(PassRequest request) {
   request.detectors = std::exchange(request.first_exact, {});
-  request.exact = request.one_bounce = true;
+  request.how = PassMethod::exact;
+  request.one_bounce = true;
   request.replicates = 1;
   request.phase = "exact";
   return request;
@@ -220,7 +221,7 @@ PassPlan plan_pass(const Scene& scene, const Geometry& geometry, PassRequest req
   set_scales(plan.scales, &plan.beams.views);
   plan.detectors = detectors_of(scene, geometry, plan);
   plan.layout = layout_of(plan, &plan.detectors);
-  if (plan.request.exact) {
+  if (plan.request.without_rays()) {
     for (const Orientation& view : plan.request.orientations) plan.motions.push_back(motions_of(scene, geometry, view));
   } else {
     // Where the first bounce is solved, rays serve later ones, whose delays strata do not foresee.

@@ -14,6 +14,7 @@
 #include "body/lanes.hpp"
 #include "body/materials.hpp"
 #include "device/program.hpp"
+#include "pipeline/method.hpp"
 #include "pipeline/sums.hpp"
 #include "shared/abi.h"
 
@@ -26,12 +27,17 @@ struct PassRequest : BeamRequest {
   std::vector<int> first_exact;       ///< those of them whose first bounce is solved; rays find the rest
   std::size_t first_orientation = 0;  ///< where the orientations stand in Result::orientations
   std::vector<Lane> lanes;
-  bool grid = false;                ///< the views are a grid of light directions of a detector's own
-  bool apart = false;               ///< it is traced under light of its own, beside others under the scene's
-  bool exact = false;               ///< visibility is solved: no rays, one replicate
-  bool one_bounce = false;          ///< whatever the scene says: it is the first bounce of another pass
+  bool grid = false;        ///< the views are a grid of light directions of a detector's own
+  bool apart = false;       ///< it is traced under light of its own, beside others under the scene's
+  bool one_bounce = false;  ///< whatever the scene says: it is the first bounce of another pass, or there is no other
+  PassMethod how = PassMethod::points;
   std::vector<std::string> method;  ///< why its detectors are solved or sampled
   std::uint32_t replicates = 16;
+
+  bool exact() const { return how == PassMethod::exact; }
+  bool tiles() const { return how == PassMethod::tiles; }
+  /// Whether faces alone are looked at, and rays are not needed.
+  bool without_rays() const { return exact() || tiles(); }
 };
 
 /// The fixed-point scale of a view's weights, and its middle and half of path lengths.

@@ -25,7 +25,8 @@ struct SolvedView {
   const std::vector<std::size_t>& connections;  ///< of the pass: the observers that see this
   const BeamFaces& beam;
   const VisibleFace* visible;  ///< of each face
-  const double* weights;  ///< of each face's lanes: its radiant intensity over irradiance, per area across the beam
+  const double* weights;    ///< of each face's lanes: its radiant intensity over irradiance, per area across the beam
+  std::uint64_t times = 1;  ///< as which it counts in the sums of each replicate
 };
 
 }  // namespace clray

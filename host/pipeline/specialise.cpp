@@ -24,7 +24,7 @@ class Specialiser {
 
   Specialised run() {
     out_.kept = plan_.request.method;
-    if (plan_.request.exact) return exact();
+    if (plan_.request.without_rays()) return faces();
     first_hits();
     tables();
     detectors();
@@ -35,7 +35,7 @@ class Specialiser {
 
  private:
   // An exact pass has a program of its own (exact.cl), which knows faces and no surfaces.
-  Specialised exact() {
+  Specialised faces() {
     const ExactNumbers numbers = exact_numbers(plan_);
     out_.entry = "exact.cl";
     define("CLRAY_LANES", numbers.lanes);
@@ -43,6 +43,7 @@ class Specialiser {
     define("CLRAY_FROM_SOURCE", numbers.from_source ? 1 : 0);
     define("CLRAY_CARRY", numbers.carry ? 1 : 0);
     define("CLRAY_EXACT_STACK", kWaiting);
+    define("CLRAY_TILES", numbers.tiles ? 1 : 0);
     out_.kept.push_back("faces, tiles and their visible parts: visibility is solved");
     if (numbers.carry) out_.kept.push_back("lit pieces carried to other views: an observer is not at the source");
     if (!numbers.carry) out_.left_out.push_back("lit pieces carried to other views: what is lit is all that is seen");

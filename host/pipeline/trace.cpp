@@ -19,6 +19,7 @@
 #include "pipeline/pass_driver.hpp"
 #include "pipeline/pass_runner.hpp"
 #include "pipeline/plan.hpp"
+#include "pipeline/tiles_runner.hpp"
 #include "pipeline/warnings.hpp"
 #include "text/hash.hpp"
 #include "text/text.hpp"
@@ -45,7 +46,8 @@ void add_unique(const std::vector<std::string>& from, std::vector<std::string>* 
 Geometry geometry_of(const Scene& scene, std::vector<PassRequest>* requests) {
   Geometry geometry = build_geometry(scene, !may_need_no_rays(scene));
   *requests = pass_requests(scene, geometry);
-  const bool rays = std::any_of(requests->begin(), requests->end(), [](const PassRequest& r) { return !r.exact; });
+  const bool rays =
+      std::any_of(requests->begin(), requests->end(), [](const PassRequest& r) { return !r.without_rays(); });
   return rays && !geometry.trees ? build_geometry(scene) : geometry;
 }
 
@@ -60,11 +62,25 @@ PassOutcome solved(const Scene& scene, Device& device, const PassPlan& plan, con
   return outcome;
 }
 
+/// Takes a pass along its course. Adds to the seconds spent compiling and tracing.
+PassOutcome driven(const Scene& scene, const PassPlan& plan, const Geometry& geometry, PointRunner& runner,
+                   const TraceHooks& hooks, double time_left_s, double* compiling, double* tracing) {
+  *compiling += runner.compile_seconds();
+  const double begin = now();
+  PassOutcome outcome = drive_pass(geometry, plan, runner, scene.trace, hooks, time_left_s);
+  *tracing += now() - begin;
+  return outcome;
+}
+
 /// Traces or solves a pass, or solves its first bounce and traces the rest. Adds to the seconds spent compiling and
 /// tracing.
 PassOutcome outcome_of(const Scene& scene, Device& device, const PassPlan& plan, const Geometry& geometry,
                        const TraceHooks& hooks, double time_left_s, double* compiling, double* tracing) {
-  if (plan.request.exact) return solved(scene, device, plan, geometry, hooks, time_left_s, compiling, tracing);
+  if (plan.request.exact()) return solved(scene, device, plan, geometry, hooks, time_left_s, compiling, tracing);
+  if (plan.request.tiles()) {
+    TilesRunner runner(device, plan, geometry);
+    return driven(scene, plan, geometry, runner, hooks, time_left_s, compiling, tracing);
+  }
   double solving = 0.0;
   if (plan.first) {
     PassOutcome first = solved(scene, device, plan.first->plan, geometry, hooks, time_left_s, compiling, &solving);
@@ -74,10 +90,7 @@ PassOutcome outcome_of(const Scene& scene, Device& device, const PassPlan& plan,
     if (time_left_s > 0.0) time_left_s = std::max(1e-6, time_left_s - solving);
   }
   PassRunner runner(device, plan, geometry, scene.trace);
-  *compiling += runner.compile_seconds();
-  const double begin = now();
-  PassOutcome outcome = drive_pass(geometry, plan, runner, scene.trace, hooks, time_left_s);
-  *tracing += now() - begin;
+  PassOutcome outcome = driven(scene, plan, geometry, runner, hooks, time_left_s, compiling, tracing);
   for (ErrorPoint& point : outcome.errors) point.seconds += solving;
   return outcome;
 }
@@ -127,7 +140,7 @@ Result trace(const Scene& scene, Device& device, const TraceHooks& hooks) {
     const std::uint64_t per_point =
         plan.request.replicates * (plan.request.pixels ? static_cast<std::uint64_t>(size.width) * size.height : 1);
     const std::vector<std::uint64_t>& points = outcome.sums.points;
-    if (result.rays == 0 && !plan.request.exact)
+    if (result.rays == 0 && !plan.request.exact())
       result.rays = *std::max_element(points.begin(), points.end()) * per_point;
     result.rays_total += outcome.rays_total;
     result.digest = digest_of(result.digest, plan, outcome.sums);

@@ -86,7 +86,7 @@ double unseen_share(const PassPlan& plan, const Sums& sums) {
 
 std::vector<std::string> doubtful_claims(const PassPlan& plan, const Geometry& geometry, const Sums& sums) {
   std::vector<std::string> warnings;
-  if (plan.request.paints() || plan.request.exact) return warnings;
+  if (plan.request.paints() || plan.request.without_rays()) return warnings;
   const std::uint64_t fewest = *std::min_element(sums.points.begin(), sums.points.end());
   const double rays = static_cast<double>(fewest) * plan.request.replicates;
   const bool sampled =

@@ -32,6 +32,7 @@ struct Estimate {
   double rounding_bound = std::numeric_limits<double>::quiet_NaN();
   /// Of a number whose first bounce alone is solved: that part of the value, which has no standard error. Else NaN.
   double exact_part = std::numeric_limits<double>::quiet_NaN();
+  bool tiles = false;  ///< points lay in tiles (docs/exact.md), not on rays
 
   bool exact() const { return rounding_bound >= 0.0 && std::isnan(exact_part); }
   bool partly_exact() const { return !std::isnan(exact_part); }

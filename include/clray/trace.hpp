@@ -13,9 +13,10 @@ struct Scene;
 struct Result;
 class Device;
 
-/// How numbers are found (docs/exact.md). Exact: visibility is solved, points: rays sample it, automatic: exact where
-/// the scene allows it and no rays are given.
-enum class Method { automatic, exact, points };
+/// How numbers are found (docs/exact.md). Exact: visibility is solved; tiles: it is solved where one face covers a tile
+/// of the beam, and sampled in other tiles until the error is what was asked for; points: rays sample it; automatic:
+/// exact where the scene allows it and no rays are given, and tiles where they reach a target sooner.
+enum class Method { automatic, exact, tiles, points };
 
 /// When to stop and how to sample; `clray --list trace` has the ranges. Rays, target or time end the run, whichever
 /// comes first. Without any of them it goes to 1 %, with at least 2^22 rays over all orientations together.

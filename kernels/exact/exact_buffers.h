@@ -23,4 +23,18 @@
   X(CLRAY_GLOBAL ClrayPiece, lit)              \
   X(volatile CLRAY_GLOBAL u32, lit_count)
 
+// What the sampling of a view's tiles reads: faces, weights, tiles, their lists of faces, windows, and what the points
+// are for. Then what it writes: what each point brings, sums of each lane and replicate, bins, and hits of the bins.
+#define CLRAY_SAMPLE_BUFFERS(X)                 \
+  X(const CLRAY_GLOBAL ClrayFace, faces)        \
+  X(const CLRAY_GLOBAL f64, weights)            \
+  X(const CLRAY_GLOBAL ClrayTile, tiles)        \
+  X(const CLRAY_GLOBAL u32, listed)             \
+  X(const CLRAY_GLOBAL ClrayBinning, binnings)  \
+  X(const CLRAY_GLOBAL ClraySampling, sampling) \
+  X(CLRAY_GLOBAL f64, values)                   \
+  X(volatile CLRAY_GLOBAL i64, sums)            \
+  X(volatile CLRAY_GLOBAL i64, bins)            \
+  X(volatile CLRAY_GLOBAL u32, hits)
+
 #endif

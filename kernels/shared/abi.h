@@ -218,6 +218,14 @@ typedef struct ClrayBinning {
   u64 bins;
 } ClrayBinning;
 
+/// How the tiles of a view that are not solved are sampled, a point of each replicate in each.
+typedef struct ClraySampling {
+  f64 path_middle_m, inv_path_per_m;  // as in ClrayView
+  u32 key0, key1, epoch, round;       // of the random numbers
+  u32 replicates;
+  u32 adds;  // 1: points add to the sums; 0: what they bring is only noted, to find out where tiles are to be cut
+} ClraySampling;
+
 // Sizes, asserted in C++ here and on the device by the start-up self-test.
 #define CLRAY_SIZES(X)   \
   X(ClrayMaterial, 120)  \
@@ -234,6 +242,7 @@ typedef struct ClrayBinning {
   X(ClrayListed, 48)     \
   X(ClrayTile, 56)       \
   X(ClrayPiece, 128)     \
+  X(ClraySampling, 40)   \
   X(ClrayBinning, 32)
 #ifdef __cplusplus
 #define CLRAY_ASSERT_SIZE(type, size) static_assert(sizeof(type) == size, "abi.h: " #type);

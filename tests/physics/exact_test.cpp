@@ -102,3 +102,15 @@ TEST_CASE("a grid of Sun directions on a body that hides parts of itself agrees 
     }
   }
 }
+
+TEST_CASE("detectors that are found in different ways share one set of books") {
+  // The push on mirrors is solved, and what they send to an observer rays must find: two passes, each with books.
+  clray::Scene scene = lambert_scene(plate_mesh(2.0, 1.0), toward(0.4));
+  add(scene, moved(plate_mesh(1.0, 1.0), {3.0, 0.0, 0.0}), mirror(0.9));
+  scene.detectors.push_back({"pressure", "push", {}});
+  scene.trace.method = clray::Method::automatic;
+  const clray::Result result = run(scene);
+  REQUIRE(result.energy.size() == 1);
+  CHECK(!std::isnan(result.energy.front().truncated_m2.value));
+  check_estimate(result.energy.front().incident_m2, 3.0 * std::cos(0.4), 1e-3, "incident");
+}

@@ -38,7 +38,7 @@ EnergyBooks books_of(const RoomResults& x, const LaneRecord& record) {
   }
   // Reflected light is not followed, so that it is not known what hits the body again. Several bounces are solved
   // where nothing can.
-  if (x.plan.request.exact && x.plan.traits.max_bounces == 1)
+  if (x.plan.request.exact() && x.plan.traits.max_bounces == 1)
     e.truncated_m2.value = std::numeric_limits<double>::quiet_NaN();
   return e;
 }
@@ -64,6 +64,18 @@ void books_solved(const SolvedContext& x, Sums* sums) {
   }
 }
 
+/// Detectors whose numbers come about in different ways have passes of their own, and each keeps books of the same
+/// light. One set is enough: that which knows all, or else the first.
+bool has_known_twin(const RoomResults& x, const LaneRecord& record, const EnergyBooks& e) {
+  if (x.plan.request.lanes[record.first].share < 1.0) return false;
+  for (EnergyBooks& twin : x.out.energy) {
+    if (!same_record(twin.key, e.key)) continue;
+    if (std::isnan(twin.truncated_m2.value)) twin = e;
+    return true;
+  }
+  return false;
+}
+
 void books_results(const RoomResults& x) {
   if (x.plan.request.pixels) return;  // rays from pixels carry no light
   for (const LaneRecord& record : lane_records(x.plan.request.lanes)) {
@@ -73,6 +85,7 @@ void books_results(const RoomResults& x) {
       fraction = std::max(fraction, e.truncated_m2.value / e.incident_m2.value);
     }
     EnergyBooks* known = x.known(x.out.energy, e.key, record);
+    if (known == nullptr && has_known_twin(x, record, e)) continue;
     if (known == nullptr) {
       x.out.energy.push_back(std::move(e));
       continue;

@@ -94,7 +94,7 @@ void delay_moments(const PassPlan& plan, const SumReader& read, std::size_t v, s
     for (Estimate* e : {&out->mean_delay_s, &out->rms_width_s})
       set_error(a.standard_error / a.value * to_s, plan.request.replicates, e);
   }
-  if (!plan.request.exact) return;
+  if (!plan.request.exact()) return;
   // Moments of tau, within [-1, 1], are off by no more than A is: d(m1/m0) <= 2 dA/A, and the variance by three times
   // that.
   const double off = 2.0 * read.rounding(v, l, c) / pooled[0], width = out->rms_width_s.value / to_s;
@@ -133,7 +133,7 @@ BinSample bin_sample(const RoomResults& x, std::size_t v, std::size_t l, std::si
     s.replicates_hit += h != 0;
   }
   s.mean /= count;
-  if (x.plan.request.exact) return s;
+  if (x.plan.request.exact()) return s;
   for (std::uint32_t r = 0; r < replicates; ++r) squares += (sum(r) - s.mean) * (sum(r) - s.mean);
   s.spread = std::sqrt(squares / (count * (count - 1.0)));
   if (agree(s.mean, s.spread))
@@ -165,7 +165,7 @@ void add_bin(const RoomResults& x, double solved, const BinSample& s, const HitS
   const std::uint32_t replicates = x.plan.request.replicates;
   const double value = s.mean + solved, most = poisson_upper95(s.hits);
   double error = s.spread;
-  bool resolved = x.plan.request.exact || (s.hits >= 10 && 2 * s.replicates_hit >= replicates);
+  bool resolved = x.plan.request.exact() || (s.hits >= 10 && 2 * s.replicates_hit >= replicates);
   if (!resolved && x.read.adds_to(x.detector.first_block + kBins)) {
     // Few hits show no error to be trusted. At 95 % no more than `most` were due, each of the mean size. A bin that is
     // known as well as ten hits know it, since most of it is solved, is resolved.
@@ -175,7 +175,7 @@ void add_bin(const RoomResults& x, double solved, const BinSample& s, const HitS
   }
   out->bin_m2_per_sr.push_back(value);
   out->bin_standard_error.push_back(error);
-  if (!x.plan.request.exact) out->hits.push_back(s.hits);
+  if (!x.plan.request.exact()) out->hits.push_back(s.hits);
   out->resolved.push_back(resolved);
   out->bin_upper_bound.push_back(resolved ? 0.0 : solved + hit.largest * most);
 }
@@ -258,7 +258,10 @@ void intensity_solved(const SolvedContext& x, Sums* sums) {
     }
     for (const std::size_t c : x.solved.connections) {
       const std::size_t row = (x.solved.view * shape.lanes + l) * shape.connections + c;
-      for (std::size_t k = 0; k < 3; ++k) sums->values.set(block.offset + 3 * row + k, moments[k]);
+      for (std::uint64_t r = 0; r < shape.replicates; ++r) {
+        for (std::size_t k = 0; k < 3; ++k)
+          sums->values.add(block.offset + 3 * (row * shape.replicates + r) + k, moments[k] * x.solved.times);
+      }
       sums->rounding[row] = rounding;
     }
   }

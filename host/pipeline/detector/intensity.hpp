@@ -42,7 +42,7 @@ inline std::uint64_t hits_of(const PassPlan& plan, const SumReader& read, std::s
 /// A with its error. The rays that bring it are those that the delay histogram counted, where there is one.
 inline Estimate intensity_estimate(const PassPlan& plan, const SumReader& read, std::size_t v, std::size_t l,
                                    std::size_t c) {
-  if (plan.request.exact) {
+  if (plan.request.exact()) {
     Estimate exact = exact_number(intensity_moment(plan, read, v, l, c, 0, 0));
     exact.rounding_bound = read.rounding(v, l, c);
     return exact;
@@ -51,6 +51,7 @@ inline Estimate intensity_estimate(const PassPlan& plan, const SumReader& read, 
   const double rays = hits != 0 ? static_cast<double>(hits) / plan.request.replicates : rays_of(read, v);
   const double solved = solved_intensity(plan, read, v, l, c);
   Estimate e = estimate_total(intensities(plan, read, v, l, c), rays, solved);
+  e.tiles = plan.request.tiles();
   if (read.adds_to(find_detector(plan, "intensity")->first_block)) {
     e.exact_part = solved;
     e.rounding_bound = read.rounding(v, l, c);

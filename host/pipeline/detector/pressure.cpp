@@ -101,7 +101,7 @@ VectorEstimate vector_of(const RoomResults& x, std::size_t v, const LaneRecord& 
     out.standard_error[axis] = e.standard_error;
     out.relative_variance_of_variance[axis] = e.relative_variance_of_variance;
   }
-  if (x.plan.request.exact || first_exact) {
+  if (x.plan.request.exact() || first_exact) {
     // Light hands over at most twice its momentum, and five thirds of it with heat.
     out.rounding_bound = 2.0 * x.read.area_rounding(v) * (k >= 3 ? x.plan.scales.lever_m : 1.0);
   }
@@ -122,7 +122,7 @@ PressureResult pressure_record(const RoomResults& x, std::size_t v, const LaneRe
     p.component_m3.push_back(vector_of(x, v, record, k, k + 1, 3));
   }
   p.absorbed_m2 = estimate_total(book(x.plan, x.read, v, record, CLRAY_BOOK_ABSORBED), rays_of(x.read, v));
-  if (x.plan.request.exact) p.absorbed_m2.rounding_bound = x.read.area_rounding(v);
+  if (x.plan.request.exact()) p.absorbed_m2.rounding_bound = x.read.area_rounding(v);
   return p;
 }
 

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// See sample_device.hpp.
+#include "pipeline/sample_device.hpp"
+
+#include "device/buffers.hpp"
+#include "pipeline/exact_self_test.hpp"
+
+namespace clray {
+namespace {
+
+constexpr std::size_t kGroup = 64;  // work-items
+
+}  // namespace
+
+SampleDevice::SampleDevice(OpenedDevice& device, const ProgramOptions& options, const ExactNumbers& numbers)
+    : opened_(device), numbers_(numbers) {
+  const std::string source = program_source(opened_, "exact.cl", options);
+  const cl::Program program = build_source(opened_, "exact.cl", source, options.warnings_are_errors);
+  kernel_ = make_kernel(opened_, program, "clray_sample");
+  run_sample_self_test(opened_, source, kernel_, numbers_);
+}
+
+SampleDevice::SampleDevice(OpenedDevice& device, const cl::Kernel& kernel, const ExactNumbers& numbers)
+    : opened_(device), numbers_(numbers), kernel_(kernel) {}
+
+void SampleDevice::begin_view(const FaceGroup& group) {
+  check_buffer_size(opened_, static_cast<double>(sizeof(ClrayFace)) * static_cast<double>(group.faces.size()),
+                    "the faces of a view", "faces");
+  faces_ = make_buffer(opened_, group.faces);
+  weights_ = make_buffer(opened_, group.weights);
+  binnings_ = make_buffer(opened_, group.binnings);
+  bin_numbers_ = 0;
+  for (const ClrayBinning& b : group.binnings) bin_numbers_ += numbers_.lanes * (b.bins + 2);
+}
+
+SampleSums SampleDevice::sample(const SampledTiles& tiles, const ClraySampling& sampling) {
+  const std::size_t points = tiles.tiles.size() * sampling.replicates;
+  const std::size_t moments = sampling.adds == 0 ? 0 : std::size_t{3} * numbers_.lanes * sampling.replicates;
+  const std::size_t bins = sampling.adds == 0 ? 0 : bin_numbers_ * sampling.replicates;
+  check_sums_size(opened_, bins);
+  const cl::Buffer values = make_buffer<double>(opened_, points), sums = make_zero_buffer<i64>(opened_, moments);
+  const cl::Buffer histogram = make_zero_buffer<i64>(opened_, bins), hits = make_zero_buffer<u32>(opened_, bins);
+  if (points > 0) {
+    const cl::Buffer at = make_buffer(opened_, tiles.tiles), listed = make_buffer(opened_, tiles.listed);
+    const cl::Buffer how = make_buffer(opened_, std::vector<ClraySampling>{sampling});
+    const std::size_t items = sample_items(tiles.tiles.size(), sampling.replicates);
+    set_arguments(opened_, kernel_, faces_, weights_, at, listed, binnings_, how, values, sums, histogram, hits,
+                  static_cast<cl_uint>(items));
+    launch(opened_, kernel_, items, kGroup);
+    with_cl_errors(opened_.info.name, [&] { opened_.queue.finish(); });
+  }
+  return {read_buffer<double>(opened_, values, points), read_buffer<i64>(opened_, sums, moments),
+          read_buffer<i64>(opened_, histogram, bins), read_buffer<u32>(opened_, hits, bins)};
+}
+
+}  // namespace clray

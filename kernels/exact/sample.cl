@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tiles that are not solved are sampled: a point of each replicate in each tile sees the face in front there. The faces
+// of a tile are few, so they are asked one after the other. What a point brings stands for the whole tile.
+#ifndef CLRAY_EXACT_SAMPLE_CL
+#define CLRAY_EXACT_SAMPLE_CL
+
+#include "exact/bins.cl"
+#include "exact/integrals.cl"
+#include "shared/philox.h"
+
+/// What the work-items of a sampling read and add to.
+typedef struct Sampled {
+#define CLRAY_BUFFER(type, name) type* name;
+  CLRAY_SAMPLE_BUFFERS(CLRAY_BUFFER)
+#undef CLRAY_BUFFER
+} Sampled;
+
+#define CLRAY_TOGETHER 8u  // points of a tile that are asked together
+
+/// The points of some replicates in a tile, and what each sees so far.
+typedef struct Points {
+  f64 x[CLRAY_TOGETHER], y[CLRAY_TOGETHER], depth[CLRAY_TOGETHER];
+  i64 order[CLRAY_TOGETHER], face[CLRAY_TOGETHER];  // -1: nothing
+} Points;
+
+/// A face shows itself to the points that it is nearest to. Of faces in one place the first in order is seen. Without
+/// branches, so that compilers take several points at once.
+CLRAY_FN void show_face(const CLRAY_GLOBAL ClrayFace* face, u32 own, Points* p) {
+  const f64 x0 = face->x[0], x1 = face->x[1], x2 = face->x[2], y0 = face->y[0], y1 = face->y[1], y2 = face->y[2];
+  const f64 margin = face->margin, depth0 = face->depth0, slope_x = face->slope_x, slope_y = face->slope_y;
+  const f64 dx0 = x1 - x0, dx1 = x2 - x1, dx2 = x0 - x2, dy0 = y1 - y0, dy1 = y2 - y1, dy2 = y0 - y2;
+  const i64 order = (i64)face->order;
+  for (u32 k = 0; k < CLRAY_TOGETHER; ++k) {
+    const f64 x = p->x[k], y = p->y[k];
+    const f64 a0 = dy0 * (x - x0), a1 = dy1 * (x - x1), a2 = dy2 * (x - x2);
+    const f64 s0 = fma(dx0, y - y0, -a0), s1 = fma(dx1, y - y1, -a1), s2 = fma(dx2, y - y2, -a2);
+    const f64 depth = fma(slope_y, y - y0, fma(slope_x, x - x0, depth0)), gap = depth - p->depth[k];
+    const u32 inside = (s0 >= 0.0) & (s1 >= 0.0) & (s2 >= 0.0);
+    const u32 alike = (gap >= -margin) & (gap <= margin) & (order < p->order[k]);
+    const u32 seen = inside & ((gap > margin) | alike);
+    p->depth[k] = seen ? depth : p->depth[k];
+    p->order[k] = seen ? order : p->order[k];
+    p->face[k] = seen ? (i64)own : p->face[k];
+  }
+}
+
+CLRAY_FN f64 uniform53(u32 high, u32 low) {
+  return fma((f64)(high >> 6), 134217728.0, (f64)(low >> 5)) * 1.1102230246251565e-16;
+}
+
+/// Adds what a point brings: A and its moments of path length, and its place in each histogram.
+static void add_sample(const Sampled* g, u32 own, u32 replicate, f64 x, f64 y, f64 area) {
+  const CLRAY_GLOBAL ClrayFace* face = g->faces + own;
+  const CLRAY_GLOBAL ClraySampling* s = g->sampling;
+  const f64 path = face->path_m + face_path(face, x, y), tau = (path - s->path_middle_m) * s->inv_path_per_m;
+  for (u32 lane = 0; lane < CLRAY_LANES; ++lane) {
+    const f64 w = g->weights[(u64)own * CLRAY_LANES + lane] * area * face->bin_scale;
+    if (w == 0.0) continue;
+    volatile CLRAY_GLOBAL i64* row = g->sums + ((u64)lane * s->replicates + replicate) * 3u;
+    const i64 q[3] = {convert_long_rte(w), convert_long_rte(w * tau), convert_long_rte(w * tau * tau)};
+    for (u32 k = 0; k < 3u; ++k) atomic_add_i64(row + k, q[k]);
+    for (u32 n = 0; n < CLRAY_BINNINGS; ++n) {
+      const CLRAY_GLOBAL ClrayBinning* b = g->binnings + n;
+      const f64 u = (path - b->first_m) * b->per_metre;
+      const i64 bin = u < 0.0 ? -1 : (u >= (f64)b->bins ? (i64)b->bins : (i64)floor(u));
+      const u64 row = (u64)lane * s->replicates + replicate, width = b->bins + 2u;
+      const u64 begin = b->offset * s->replicates + row * width;  // lint: integer
+      const u64 at = begin + (u64)(bin + 1);
+      atomic_add_i64(g->bins + at, q[0]);
+      atomic_inc(g->hits + at);
+    }
+  }
+}
+
+/// The points of CLRAY_TOGETHER replicates in one tile.
+static void sample_item(const Sampled* g, u32 item) {
+  const CLRAY_GLOBAL ClraySampling* s = g->sampling;
+  const u32 groups = max((s->replicates + CLRAY_TOGETHER - 1u) / CLRAY_TOGETHER, 1u);
+  const u32 number = item / groups, first = (item - number * groups) * CLRAY_TOGETHER;
+  const CLRAY_GLOBAL ClrayTile* tile = g->tiles + number;
+  Points p;
+  for (u32 k = 0; k < CLRAY_TOGETHER; ++k) {
+    const u32 counter[4] = {number, first + k, s->epoch, s->round};
+    u32 random[4];
+    philox4x32(s->key0, s->key1, counter, random);
+    p.x[k] = fma(uniform53(random[0], random[1]), tile->x1 - tile->x0, tile->x0);
+    p.y[k] = fma(uniform53(random[2], random[3]), tile->y1 - tile->y0, tile->y0);
+    p.depth[k] = -1e300;
+    p.order[k] = p.face[k] = -1;
+  }
+  for (u32 k = 0; k < tile->count; ++k) {
+    const u32 own = g->listed[tile->first + k];
+    show_face(g->faces + own, own, &p);
+  }
+  const f64 area = (tile->x1 - tile->x0) * (tile->y1 - tile->y0);
+  for (u32 k = 0; k < CLRAY_TOGETHER && first + k < s->replicates; ++k) {
+    f64 mean = 0.0;
+    for (u32 lane = 0; lane < CLRAY_LANES && p.face[k] >= 0; ++lane)
+      mean += g->weights[(u64)p.face[k] * CLRAY_LANES + lane];
+    g->values[number * s->replicates + first + k] = mean * area;
+    if (s->adds != 0u && mean != 0.0) add_sample(g, (u32)p.face[k], first + k, p.x[k], p.y[k], area);
+  }
+}
+
+#endif
