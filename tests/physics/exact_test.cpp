@@ -109,6 +109,7 @@ TEST_CASE("detectors that are found in different ways share one set of books") {
   add(scene, moved(plate_mesh(1.0, 1.0), {3.0, 0.0, 0.0}), mirror(0.9));
   scene.detectors.push_back({"pressure", "push", {}});
   scene.trace.method = clray::Method::automatic;
+  scene.trace.rays = 0;
   const clray::Result result = run(scene);
   REQUIRE(result.energy.size() == 1);
   CHECK(!std::isnan(result.energy.front().truncated_m2.value));
