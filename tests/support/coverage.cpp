@@ -154,6 +154,10 @@ std::vector<CoverageScene> coverage_scenes() {
       scenes.push_back(std::move(c));
     }
   }
+  CoverageScene tiles = delay_of_prism(true);
+  tiles.name = "delay of a hexagonal prism, tiles";
+  tiles.scene.trace.method = clray::Method::tiles;
+  scenes.push_back(std::move(tiles));
   return scenes;
 }
 

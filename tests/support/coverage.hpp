@@ -36,7 +36,8 @@ struct CoverageScene {
   std::vector<Claim> claims;
 };
 
-/// Delay totals, means and widths, spectrometer, force, torque, absorbed light, pictures and cubes; Sobol and random.
+/// Delay totals, means and widths, spectrometer, force, torque, absorbed light, pictures and cubes; Sobol and random. A
+/// delay total by tiles.
 std::vector<CoverageScene> coverage_scenes();
 
 /// Coverage of each claim over 400 seeds. Of some fifteen independent claims that are fair one misses by chance in one
