@@ -25,6 +25,14 @@ thread_local ExactNumbers host_numbers;
 #include "exact/leaf.cl"
 #include "exact/sample.cl"
 
+Exact exact_of(const ExactBuffers& buffers) {
+  Exact g{};
+#define CLRAY_TAKE(type, name) g.name = buffers.name;
+  CLRAY_EXACT_BUFFERS(CLRAY_TAKE)
+#undef CLRAY_TAKE
+  return g;
+}
+
 }  // namespace
 
 bool face_hides(const ClrayFace& front, const ClrayFace& face, double margin) {
@@ -36,10 +44,7 @@ void exact_item_on_host(const ExactBuffers& buffers, const ExactNumbers& numbers
                         std::uint32_t skip, std::vector<ClrayPiece>* lit) {
   constexpr std::uint32_t kMostWaiting = 1u << 20, kLitTogether = 1024;
   host_numbers = numbers;
-  Exact g{};
-#define CLRAY_TAKE(type, name) g.name = buffers.name;
-  CLRAY_EXACT_BUFFERS(CLRAY_TAKE)
-#undef CLRAY_TAKE
+  Exact g = exact_of(buffers);
   thread_local std::vector<Fragment> stack(1024);
   std::vector<ClrayPiece> pieces(numbers.carry ? kLitTogether : 0);
   std::uint32_t full = 0, count[2];
@@ -62,10 +67,7 @@ void exact_item_on_host(const ExactBuffers& buffers, const ExactNumbers& numbers
 void covered_tile_on_host(const ExactBuffers& buffers, const ExactNumbers& numbers, std::uint32_t tile,
                           std::uint32_t face) {
   host_numbers = numbers;
-  Exact g{};
-#define CLRAY_TAKE(type, name) g.name = buffers.name;
-  CLRAY_EXACT_BUFFERS(CLRAY_TAKE)
-#undef CLRAY_TAKE
+  Exact g = exact_of(buffers);
   const ClrayTile& t = g.tiles[tile];
   Fragment f;
   f.corners = 0;

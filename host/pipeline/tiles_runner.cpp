@@ -172,12 +172,8 @@ void TilesRunner::Parts::add_histogram(const PassDetector& d, const i64* numbers
 void TilesRunner::Parts::solve_covered(const Stage& stage, std::uint32_t v, std::uint64_t points, Group* group,
                                        Sums* sums) const {
   const std::size_t lanes = plan.request.lanes.size();
-  std::uint64_t numbers = 0;
-  std::vector<ClrayBinning> binnings = group->on_device.binnings;
-  for (ClrayBinning& b : binnings) {
-    b.offset = numbers;
-    numbers += lanes * (b.bins + 2);
-  }
+  const std::vector<ClrayBinning>& binnings = group->on_device.binnings;
+  const std::uint64_t numbers = binnings.empty() ? 0 : binnings.back().offset + lanes * (binnings.back().bins + 2);
   std::vector<i64> face_sums(group->on_device.faces.size() * CLRAY_FACE_SUMS), bins(numbers);
   ExactBuffers host;
   host.faces = group->on_device.faces.data();
@@ -219,6 +215,18 @@ std::uint32_t bits_above(double x) {
   return bits;
 }
 
+/// What a point of a lane brings at most, m²/sr.
+double largest_share(const Stage& stage, const Group& group, std::uint64_t lane, std::uint64_t lanes) {
+  double largest = 0.0;
+  for (const ClrayTile& t : stage.mixed.tiles) {
+    for (std::uint32_t k = 0; k < t.count; ++k) {
+      const double w = group.on_device.weights[stage.mixed.listed[t.first + k] * lanes + lane];
+      largest = std::max(largest, w * (t.x1 - t.x0) * (t.y1 - t.y0));
+    }
+  }
+  return largest;
+}
+
 void TilesRunner::Parts::add_sampled(const Stage& stage, const SampleSums& found, std::uint32_t v, std::uint64_t points,
                                      const Group& group, Sums* sums) const {
   const std::uint64_t lanes = plan.request.lanes.size(), replicates = plan.request.replicates;
@@ -227,14 +235,8 @@ void TilesRunner::Parts::add_sampled(const Stage& stage, const SampleSums& found
     const bool bins = room_of(d).binning != nullptr;
     if (!bins && room_of(d).solved == nullptr) continue;
     for (std::uint64_t l = 0; l < lanes; ++l) {
-      double largest = 0.0;  // what a point brings at most, as a weight of the whole beam
-      for (const ClrayTile& t : stage.mixed.tiles) {
-        for (std::uint32_t k = 0; k < t.count; ++k) {
-          const double w = group.on_device.weights[stage.mixed.listed[t.first + k] * lanes + l];
-          largest = std::max(largest, w * (t.x1 - t.x0) * (t.y1 - t.y0));
-        }
-      }
-      largest *= static_cast<double>(points) / plan.beams.area_m2[v];
+      const double largest =
+          largest_share(stage, group, l, lanes) * (static_cast<double>(points) / plan.beams.area_m2[v]);
       for (std::uint64_t r = 0; r < replicates; ++r) {
         const std::uint64_t row = l * replicates + r;
         if (!bins) {

@@ -28,7 +28,8 @@ static void histogram_add(const Histogram* h, i64 bin, f64 area) {
   }
 }
 
-CLRAY_FN i64 bin_of(const Histogram* h, f64 u) { return u < 0.0 ? -1 : (u >= (f64)h->bins ? h->bins : (i64)floor(u)); }
+/// The bin that holds u: -1 below the first, `bins` above the last.
+CLRAY_FN i64 bin_of(i64 bins, f64 u) { return u < 0.0 ? -1 : (u >= (f64)bins ? bins : (i64)floor(u)); }
 
 /// One side of a piece, walked from the least u to the greatest.
 typedef struct Chain {
@@ -57,7 +58,7 @@ static void histogram_piece(const Histogram* h, const __global ClrayFace* face, 
   const f64 u0 = fma(per_metre, face->path[1], u_corner), u1 = fma(per_metre, face->path[2], u_corner);
   const f64 low = f64_min(u_corner, f64_min(u0, u1)), high = f64_max(u_corner, f64_max(u0, u1));
   if (high - low < CLRAY_ONE_BIN) {
-    histogram_add(h, bin_of(h, fma(0.5, high - low, low)), area);
+    histogram_add(h, bin_of(h->bins, fma(0.5, high - low, low)), area);
     return;
   }
   // t: x or y, whichever changes less along the lines of equal u … their Jacobian is the slope of the other.
@@ -75,8 +76,8 @@ static void histogram_piece(const Histogram* h, const __global ClrayFace* face, 
   b.at = a.at;
   b.to = a.to;
   const f64 end = u[a.to];
-  i64 bin = bin_of(h, u[a.at]);
-  if (bin == bin_of(h, end)) {
+  i64 bin = bin_of(h->bins, u[a.at]);
+  if (bin == bin_of(h->bins, end)) {
     histogram_add(h, bin, area);
     return;
   }

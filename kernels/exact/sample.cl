@@ -62,7 +62,7 @@ static void add_sample(const Sampled* g, u32 own, u32 replicate, f64 x, f64 y, f
     for (u32 n = 0; n < CLRAY_BINNINGS; ++n) {
       const CLRAY_GLOBAL ClrayBinning* b = g->binnings + n;
       const f64 u = (path - b->first_m) * b->per_metre;
-      const i64 bin = u < 0.0 ? -1 : (u >= (f64)b->bins ? (i64)b->bins : (i64)floor(u));
+      const i64 bin = bin_of((i64)b->bins, u);
       const u64 row = (u64)lane * s->replicates + replicate, width = b->bins + 2u;
       const u64 begin = b->offset * s->replicates + row * width;  // lint: integer
       const u64 at = begin + (u64)(bin + 1);
