@@ -28,7 +28,7 @@ constexpr const char* kFooter =
     "  clray --detector rgb --out picture satellite.obj      a picture\n"
     "  clray --check scene.toml                              is the scene file right?\n"
     "Exit status: 0 done, 1 a fault of clray, 2 wrong arguments, 3 unusable scene or mesh, 4 no usable\n"
-    "device, 5 the result cannot be written, 130 or 143 interrupted (what was finished is saved).";
+    "device, 5 the result cannot be written, 128 + signal interrupted (what was finished is saved).";
 
 /// The options' texts, before they are parsed as values.
 struct Texts {

@@ -19,6 +19,7 @@ Environment::Environment() {
   std::string name = (fs::temp_directory_path(error) / "clray-kernels-XXXXXX").string();
   if (error || !::mkdtemp(name.data())) return;  // PoCL alone needs the folder, and will say that a build failed
   temporary_kernels_ = name;
+  noted_ = std::make_unique<text::Temporary>(name);
   ::setenv("POCL_CACHE_DIR", name.c_str(), 1);
 }
 

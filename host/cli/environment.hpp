@@ -3,7 +3,10 @@
 // there at its first call.
 #pragma once
 
+#include <memory>
 #include <string>
+
+#include "text/temporaries.hpp"
 
 namespace clray::cli {
 
@@ -19,6 +22,7 @@ class Environment {
 
  private:
   std::string temporary_kernels_;
+  std::unique_ptr<text::Temporary> noted_;
 };
 
 }  // namespace clray::cli

@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The program clray: arguments -> public API -> files. Maps every error to an exit status, turns the first SIGINT or
-// SIGTERM into an early end with what is finished, and the second into an end at once.
-#include <signal.h>
-#include <unistd.h>
-
+// The program clray: arguments -> public API -> files. Maps every error to an exit status. After a signal (signals.hpp)
+// a run ends with what is finished.
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <cstdio>
 #include <memory>
@@ -22,35 +18,13 @@
 #include "clray/sizes.hpp"
 #include "environment.hpp"
 #include "report.hpp"
+#include "signals.hpp"
 #include "text/text.hpp"
 
 namespace {
 
 using namespace clray;
 using Clock = std::chrono::steady_clock;
-
-std::atomic<bool> stop_asked{false};
-std::atomic<int> stop_signal{0};
-static_assert(std::atomic<int>::is_always_lock_free, "a signal handler may touch only lock-free atomics");
-
-extern "C" void on_signal(int signal) {
-  if (stop_asked.exchange(true)) ::_exit(128 + signal);
-  stop_signal = signal;
-}
-
-void catch_signals() {
-  struct sigaction action {};
-  action.sa_handler = on_signal;
-  sigemptyset(&action.sa_mask);
-  // Calls such as write() are resumed, since an early end must not look like a failing disk.
-  action.sa_flags = SA_RESTART;
-  for (const int signal : {SIGINT, SIGTERM}) {
-    struct sigaction before {};
-    sigaction(signal, nullptr, &before);
-    // If the signal was ignored when we started (nohup, a shell's background job), it stays so.
-    if (before.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
-  }
-}
 
 /// Warnings on standard error, each once.
 class Warnings {
@@ -73,11 +47,6 @@ void print(const std::string& text) {
 void flush_output() {
   if (std::fflush(stdout) != 0 || std::ferror(stdout))
     throw Error(ErrorCode::output, "cannot write to standard output");
-}
-
-int interrupted(const char* what) {
-  std::fprintf(stderr, "clray: interrupted %s\n", what);
-  return 128 + stop_signal;
 }
 
 void list(const std::string& kind) {
@@ -106,7 +75,7 @@ std::shared_ptr<std::string> range_with_station(const Scene& scene, Device& devi
   if (!has_session(scene) || result.delay.empty()) return told;
   options.more.push_back([&, told](const std::string& folder) {
     SessionOptions session;
-    session.plots = options.plots;
+    session.plots = options.plots && !*options.stop;
     session.device = &device;
     session.warnings = options.warnings;
     MoreFiles files = session_files(result, scene, folder, session);
@@ -116,53 +85,87 @@ std::shared_ptr<std::string> range_with_station(const Scene& scene, Device& devi
   return told;
 }
 
-int trace_and_write(const cli::Arguments& arguments, const Scene& scene, Warnings& warnings, Clock::time_point start,
-                    double load_s) {
-  const std::string folder = output_folder(arguments, scene);
-  check_output(folder);
-  if (const std::string fault = size_fault(scene, folder); !fault.empty()) throw Error(ErrorCode::output, fault);
-  Reference reference;
-  if (!arguments.reference.empty()) reference = load_reference(arguments.reference);
-  Device device(arguments.device);
-  if (stop_signal) return interrupted("before anything was traced");
-  Result result;
-  {
-    cli::ProgressBar bar(!arguments.quiet);
-    TraceHooks hooks;
-    hooks.progress = [&](const Progress& progress) { bar.show(progress); };
-    hooks.stop = &stop_asked;
-    result = trace(scene, device, hooks);
-  }
-  warnings.show(result.warnings);
-  if (result.partial && result.rays == 0) {
-    if (stop_signal) return interrupted("before anything was finished; nothing is saved");
-    throw Error(ErrorCode::usage, "too short: not even the first doubling was finished; nothing is saved",
-                "--time-limit");
-  }
-  result.seconds.load = load_s;
-  result.seconds.total = seconds_since(start);
-  WriteOptions options;
-  options.plots = !arguments.no_plots;
-  options.netcdf = arguments.netcdf;
-  options.command = arguments.command;
-  options.reference_file = arguments.reference;
-  std::vector<std::string> troubles;
-  options.warnings = &troubles;
-  const std::shared_ptr<std::string> ranging = range_with_station(scene, device, result, options);
-  const auto files = write_result(result, scene, folder, options);
-  warnings.show(troubles);
-  if (arguments.explain) print(cli::explanation(result));
-  if (arguments.quiet) {
-    print("device: " + cli::device_line(result.device) + "\n" + describe_result(result).totals);
-  } else {
-    print(cli::closing_table(result, scene, folder, files, arguments.reference.empty() ? nullptr : &reference));
-    if (!ranging->empty()) print("\n" + *ranging);
-  }
-  if (stop_signal) std::fputs("clray: interrupted: the result holds what was finished and is marked partial\n", stderr);
-  return stop_signal ? 128 + stop_signal : 0;
-}
+/// A run from its scene to its files.
+class Run {
+ public:
+  Run(const cli::Arguments& arguments, const Scene& scene, cli::Signals& signals, Warnings& warnings)
+      : arguments_(arguments), scene_(scene), signals_(signals), warnings_(warnings) {}
 
-int run(int argc, char** argv) {
+  int trace_and_write(Clock::time_point start, double load_s) {
+    const std::string asked = output_folder(arguments_, scene_);
+    check_output(asked);
+    if (const std::string fault = size_fault(scene_, asked); !fault.empty()) throw Error(ErrorCode::output, fault);
+    if (!arguments_.reference.empty()) reference_ = load_reference(arguments_.reference);
+    Device device(arguments_.device);
+    Result result = traced(device);
+    warnings_.show(result.warnings);
+    if (result.partial && !finished_something_) {
+      if (signals_.taken() != 0) return nothing_saved();
+      throw Error(ErrorCode::usage, "too short: not even the first doubling was finished; nothing is saved",
+                  "--time-limit");
+    }
+    result.seconds.load = load_s;
+    result.seconds.total = seconds_since(start);
+    write(result, device, result_folder(result, asked));
+    if (signals_.taken() == 0) return 0;
+    std::fputs(result.partial ? "clray: interrupted: the result holds what was finished and is marked partial\n"
+                              : "clray: interrupted when all was traced: the result is complete\n",
+               stderr);
+    return 128 + signals_.taken();
+  }
+
+ private:
+  Result traced(Device& device) {
+    cli::ProgressBar bar(!arguments_.quiet);
+    TraceHooks hooks;
+    hooks.progress = [&](const Progress& progress) {
+      if (progress.keeps) {
+        finished_something_ = true;
+        signals_.keep_what_is_finished();
+      }
+      bar.show(progress);
+    };
+    hooks.stop = &signals_.stop();
+    return trace(scene_, device, hooks);
+  }
+
+  int nothing_saved() const {
+    std::fputs("clray: interrupted: nothing was finished, so nothing is saved\n", stderr);
+    return 128 + signals_.taken();
+  }
+
+  void write(Result& result, Device& device, const std::string& folder) {
+    if (folder != output_folder(arguments_, scene_))
+      warnings_.show({"the older result is kept, since this one was interrupted and has less: see " + folder});
+    WriteOptions options;
+    options.plots = !arguments_.no_plots;
+    options.netcdf = arguments_.netcdf;
+    options.command = arguments_.command;
+    options.reference_file = arguments_.reference;
+    options.stop = &signals_.stop();
+    std::vector<std::string> troubles;
+    options.warnings = &troubles;
+    const std::shared_ptr<std::string> ranging = range_with_station(scene_, device, result, options);
+    const auto files = write_result(result, scene_, folder, options);
+    warnings_.show(troubles);
+    if (arguments_.explain) print(cli::explanation(result));
+    if (arguments_.quiet) {
+      print("device: " + cli::device_line(result.device) + "\n" + describe_result(result).totals);
+    } else {
+      print(cli::closing_table(result, scene_, folder, files, arguments_.reference.empty() ? nullptr : &reference_));
+      if (!ranging->empty()) print("\n" + *ranging);
+    }
+  }
+
+  const cli::Arguments& arguments_;
+  const Scene& scene_;
+  cli::Signals& signals_;
+  Warnings& warnings_;
+  Reference reference_;
+  bool finished_something_ = false;
+};
+
+int run(int argc, char** argv, cli::Signals& signals) {
   const auto start = Clock::now();
   const auto arguments = cli::parse_arguments(argc, argv);
   if (arguments.finished) return 0;
@@ -170,7 +173,6 @@ int run(int argc, char** argv) {
     list(arguments.list);
     return 0;
   }
-  catch_signals();
   Warnings warnings;
   Scene scene = load_scene(arguments.scene, arguments.scene_options);
   cli::apply(arguments, scene);
@@ -186,29 +188,39 @@ int run(int argc, char** argv) {
     print(kernel_source(scene, device));
     return 0;
   }
-  return trace_and_write(arguments, scene, warnings, start, seconds_since(start));
+  return Run(arguments, scene, signals, warnings).trace_and_write(start, seconds_since(start));
+}
+
+int fault(const char* format, const std::string& words, ErrorCode code) {
+  std::fflush(stdout);
+  std::fprintf(stderr, format, words.c_str());
+  return static_cast<int>(code);
+}
+
+/// Every error as an exit status.
+int run_with_errors(int argc, char** argv, cli::Signals& signals) {
+  try {
+    const int status = run(argc, argv, signals);
+    flush_output();
+    return status;
+  } catch (const Error& error) {
+    signals.wait_if_ending();
+    // A driver's words may have several lines.
+    const bool lines = error.code() == ErrorCode::device || error.code() == ErrorCode::bug;
+    return fault("clray: %s\n", lines ? text::shown_lines(error.what()) : text::shown(error.what()), error.code());
+  } catch (const std::bad_alloc&) {
+    return fault("clray: %s\n", "not enough memory for this scene", ErrorCode::input);
+  } catch (const std::exception& error) {
+    signals.wait_if_ending();
+    return fault("clray: this is a fault of clray, please report it: %s\n", text::shown_lines(error.what()),
+                 ErrorCode::bug);
+  }
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    const cli::Environment environment;
-    const int status = run(argc, argv);
-    flush_output();
-    return status;
-  } catch (const Error& error) {
-    std::fflush(stdout);
-    // A driver's words may have several lines.
-    const bool lines = error.code() == ErrorCode::device || error.code() == ErrorCode::bug;
-    std::fprintf(stderr, "clray: %s\n", (lines ? text::shown_lines(error.what()) : text::shown(error.what())).c_str());
-    return static_cast<int>(error.code());
-  } catch (const std::bad_alloc&) {
-    std::fputs("clray: not enough memory for this scene\n", stderr);
-    return static_cast<int>(ErrorCode::input);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "clray: this is a fault of clray, please report it: %s\n",
-                 text::shown_lines(error.what()).c_str());
-    return static_cast<int>(ErrorCode::bug);
-  }
+  const cli::Environment environment;
+  cli::Signals signals;
+  return run_with_errors(argc, argv, signals);
 }

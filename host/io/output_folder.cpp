@@ -35,18 +35,41 @@ namespace {
               "will not replace " + shown(target.string()) + ": " + why + "; choose another --out or move it away");
 }
 
-/// Names that the result at `target` says it wrote.
-std::set<std::string> files_of_result(const fs::path& target) {
-  const auto summary = nlohmann::json::parse(read_input_file((target / "summary.json").string()), nullptr, false);
-  if (!summary.is_object() || !summary.contains("clray")) refuse(target, "its summary.json is not of clray");
+/// The summary of the result at `target`; discarded where there is none.
+nlohmann::json summary_of(const fs::path& target) {
+  return nlohmann::json::parse(read_input_file((target / "summary.json").string()), nullptr, false);
+}
+
+/// Names that a result says it wrote. A name with a slash would lead out of the folder, so it is none.
+std::set<std::string> files_of_result(const nlohmann::json& summary) {
   std::set<std::string> names{"summary.json"};
   const auto files = summary.find("files");
-  if (files != summary.end() && files->is_array()) {
-    for (const auto& name : *files) {
-      if (name.is_string()) names.insert(name.get<std::string>());
-    }
+  if (files == summary.end() || !files->is_array()) return names;
+  for (const auto& name : *files) {
+    if (name.is_string() && name.get<std::string>().find('/') == std::string::npos)
+      names.insert(name.get<std::string>());
   }
   return names;
+}
+
+/// Where a result goes that must not replace the one at `target`.
+std::string beside(const fs::path& target) {
+  return target.string() + ".partial";
+}
+
+/// Removes a result that was replaced: the files that it says it wrote, and the folder if nothing else is in it.
+void remove_result(const fs::path& folder) noexcept {
+  try {
+    const auto summary = summary_of(folder);
+    if (!summary.is_object()) return;
+    for (const std::string& name : files_of_result(summary)) {
+      if (name != "summary.json") ::unlink((folder / name).c_str());
+    }
+    ::unlink((folder / "summary.json").c_str());
+  } catch (const std::exception&) {
+    // An empty folder was replaced, or it cannot be read.
+  }
+  ::rmdir(folder.c_str());
 }
 
 /// Throws unless `target` is absent, an empty folder, or a result of clray and nothing more.
@@ -61,10 +84,13 @@ void check_replaceable(const fs::path& target) {
   if (entries == fs::directory_iterator{}) return;
   if (!fs::is_regular_file(target / "summary.json", error))
     refuse(target, "it is not a result of clray (no summary.json)");
-  const auto known = files_of_result(target);
+  const auto summary = summary_of(target);
+  if (!summary.is_object() || !summary.contains("clray")) refuse(target, "its summary.json is not of clray");
+  const auto known = files_of_result(summary);
   for (const auto& entry : entries) {
     const std::string name = entry.path().filename().string();
-    if (known.count(name) == 0) refuse(target, "it holds '" + shown(name) + "', which clray did not write");
+    if (known.count(name) == 0 || fs::is_directory(entry.symlink_status()))
+      refuse(target, "it holds '" + shown(name) + "', which clray did not write");
   }
 }
 
@@ -77,6 +103,11 @@ void check_movable(const fs::path& target) {
   const bool other_disk = folder.stx_dev_major != parent.stx_dev_major || folder.stx_dev_minor != parent.stx_dev_minor;
   if (other_disk || (folder.stx_attributes & STATX_ATTR_MOUNT_ROOT) != 0)
     refuse(target, "a file system is mounted there");
+  std::error_code error;
+  for (fs::path here = fs::current_path(error); !error && !here.empty(); here = here.parent_path()) {
+    if (fs::equivalent(here, target, error)) refuse(target, "it is the current folder, or holds it");
+    if (here == here.parent_path()) break;
+  }
   const uid_t user = ::geteuid();
   const bool sticky = (parent.stx_mode & S_ISVTX) != 0;
   if (user != 0 && sticky && folder.stx_uid != user && parent.stx_uid != user)
@@ -115,6 +146,7 @@ void sync(const fs::path& path) {
 
 /// Puts `temporary` at `target`. What stood there is then at `temporary`. Returns an errno or 0.
 int exchange(const fs::path& temporary, const fs::path& target) {
+  const auto lock = hold_temporaries();
   if (::rename(temporary.c_str(), target.c_str()) == 0) return 0;
   if (errno != ENOTEMPTY && errno != EEXIST) return errno;
   if (::renameat2(AT_FDCWD, temporary.c_str(), AT_FDCWD, target.c_str(), RENAME_EXCHANGE) == 0) return 0;
@@ -165,6 +197,7 @@ int OutputFolder::make_temporary() {
     const fs::path name = target_.parent_path() / (stem + hex16(random()).substr(8));
     if (::mkdir(name.c_str(), 0777) == 0) {
       temporary_ = name;
+      noted_ = std::make_unique<Temporary>(name.string());
       return 0;
     }
     if (errno != EEXIST) return errno;
@@ -178,9 +211,13 @@ OutputFolder::~OutputFolder() {
 
 void OutputFolder::remove_leftovers() noexcept {
   std::error_code ignored;
+  if (done_) {
+    if (!temporary_.empty()) remove_result(temporary_);
+    return;
+  }
   if (!temporary_.empty()) fs::remove_all(temporary_, ignored);
   temporary_.clear();
-  if (done_) return;
+  noted_.reset();
   for (auto parent = made_parents_.rbegin(); parent != made_parents_.rend(); ++parent) ::rmdir(parent->c_str());
   made_parents_.clear();
 }
@@ -189,6 +226,7 @@ std::string OutputFolder::keep() noexcept {
   std::error_code error;
   if (temporary_.empty() || fs::is_empty(temporary_, error) || error) return {};
   done_ = true;
+  noted_.reset();
   return std::exchange(temporary_, fs::path()).string();
 }
 
@@ -198,6 +236,7 @@ void OutputFolder::commit() {
   check_replaceable(target_);  // it may have changed while we traced
   if (const int code = exchange(temporary_, target_)) fail_output("put the result at", target_, code);
   done_ = true;
+  noted_.reset();  // what stands there now is the older result
   sync(target_.parent_path());
 }
 
@@ -207,6 +246,22 @@ namespace clray {
 
 void check_output(const std::string& folder) {
   io::OutputFolder probe(folder);
+  std::error_code error;
+  const std::filesystem::path target = io::resolve(folder);
+  if (std::filesystem::exists(target / "summary.json", error)) io::OutputFolder other(io::beside(target));
+}
+
+std::string result_folder(const Result& result, const std::string& folder) {
+  if (!result.partial || result.stopped_by != "interrupt") return folder;
+  std::error_code error;
+  const std::filesystem::path target = io::resolve(folder);
+  if (!std::filesystem::is_regular_file(target / "summary.json", error)) return folder;
+  const auto summary = io::summary_of(target);
+  if (!summary.is_object()) return folder;
+  const auto partial = summary.find("partial"), rays = summary.find("rays_total");
+  const bool has_no_more = partial != summary.end() && *partial == true && rays != summary.end() &&
+                           rays->is_number_unsigned() && rays->get<std::uint64_t>() <= result.rays_total;
+  return has_no_more ? folder : io::beside(target);
 }
 
 }  // namespace clray

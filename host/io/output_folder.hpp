@@ -4,12 +4,16 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "text/temporaries.hpp"
+
 namespace clray::io {
 
-/// One folder being written. Removed with all it holds unless commit() has returned or keep() was called.
+/// One folder being written. Removed with all it holds unless commit() has returned or keep() was called. Of a folder
+/// that was replaced the result's own files are removed, and nothing else.
 class OutputFolder {
  public:
   /// Makes the temporary folder beside `target`. Throws Error(output), also where something that is not a clray
@@ -33,6 +37,7 @@ class OutputFolder {
   void remove_leftovers() noexcept;
 
   std::filesystem::path target_, temporary_;
+  std::unique_ptr<text::Temporary> noted_;
   std::vector<std::filesystem::path> made_parents_;  ///< outermost first
   bool done_ = false;
 };

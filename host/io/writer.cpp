@@ -22,7 +22,8 @@ TableFile Writer::table(const std::string& name, const std::string& what, const 
 }
 
 void Writer::draw(const Plot& plot, const std::string& name) {
-  const std::string trouble = plot.draw(folder.folder());
+  const bool stopped = options.stop != nullptr && *options.stop;
+  const std::string trouble = stopped ? "no " + name + ": interrupted" : plot.draw(folder.folder());
   if (trouble.empty()) return;
   files.pop_back();
   names.release(name);

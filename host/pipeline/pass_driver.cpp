@@ -143,6 +143,8 @@ class PassDriver {
     }
     seconds += now() - begin;
     note(step, sums, seconds);
+    finished_a_step_ = true;
+    if (hooks_.progress) hooks_.progress(progress(step, 1.0, seconds));
     return true;
   }
 
@@ -200,6 +202,7 @@ class PassDriver {
     p.relative_error = courses_.front().rules().t95 * error;
     p.fraction = done / views;
     p.seconds_left = points > 0.0 ? seconds * (1.0 / p.fraction - 1.0) : kNan;
+    p.keeps = finished_a_step_;
     return p;
   }
 
@@ -256,6 +259,7 @@ class PassDriver {
   double start_, time_left_s_;
   double search_seconds_ = 0.0, confirm_seconds_ = 0.0;
   const char* stopped_by_ = "";
+  bool finished_a_step_ = false;
   Sums searched_, confirmed_;
   PassOutcome out_;
 };
@@ -271,18 +275,20 @@ PassOutcome solve_pass(ExactPass& pass, const TraceOptions& options, const Trace
   const double start = now();
   PassOutcome out;
   const char* stopped_by = "";
+  const auto tell = [&](double share, bool keeps) {
+    if (!hooks.progress) return;
+    Progress p;
+    p.phase = "exact";
+    p.fraction = share;
+    p.relative_error = 0.0;
+    p.seconds_left = share > 0.0 ? (now() - start) * (1.0 / share - 1.0) : kNan;
+    p.keeps = keeps;
+    hooks.progress(p);
+  };
   const auto keep_going = [&](double share) {
-    const double seconds = now() - start;
     if (hooks.stop != nullptr && hooks.stop->load()) stopped_by = "interrupt";
-    if (time_left_s > 0.0 && seconds > time_left_s) stopped_by = "time limit";
-    if (hooks.progress) {
-      Progress p;
-      p.phase = "exact";
-      p.fraction = share;
-      p.relative_error = 0.0;
-      p.seconds_left = share > 0.0 ? seconds * (1.0 / share - 1.0) : kNan;
-      hooks.progress(p);
-    }
+    if (time_left_s > 0.0 && now() - start > time_left_s) stopped_by = "time limit";
+    tell(share, false);
     return *stopped_by == '\0';
   };
   out.target_asked = options.target_error_percent > 0.0;
@@ -292,6 +298,7 @@ PassOutcome solve_pass(ExactPass& pass, const TraceOptions& options, const Trace
     out.ending.by = stopped_by;
     return out;
   }
+  tell(1.0, true);
   out.target_reached = out.target_asked;
   out.ending = {"exact", 0.0, 0};
   ErrorPoint point;

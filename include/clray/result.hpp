@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -247,6 +248,7 @@ struct WriteOptions {
   std::string command;                           ///< as typed, for the summary
   std::string reference_file;                    ///< a summary.json or delay.csv to measure the true error against
   std::vector<std::string>* warnings = nullptr;  ///< receives what went wrong without harm (no gnuplot, …)
+  const std::atomic<bool>* stop = nullptr;       ///< once set, no more plots are drawn
   /// Called with the unfinished folder; what it writes there appears with the rest, or not at all.
   std::vector<std::function<MoreFiles(const std::string& folder)>> more;
 };
@@ -263,6 +265,10 @@ std::vector<std::string> write_result(const Result& result, const Scene& scene, 
 /// Whether write_result() could put a result at `folder`: throws Error(output) where it could not, because something
 /// that is not a clray result stands there or the place cannot be written. Leaves nothing behind.
 void check_output(const std::string& folder);
+
+/// Where a result belongs that was meant for `folder`: there, unless an interrupt ended it and a result stands there
+/// that is complete or has more rays. Then it is the folder's name with ".partial".
+std::string result_folder(const Result& result, const std::string& folder);
 
 /// Totals to measure the true error against, by "detector/observer/variant/band/orientation"; behind it "/sum/number"
 /// for sums that are results by themselves. In the units of the totals in summary.json.

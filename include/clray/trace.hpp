@@ -48,6 +48,7 @@ struct Progress {
   double rays_per_s = 0.0;
   double relative_error = 0.0;  ///< 95 % half-width over the value; NaN while unknown
   double seconds_left = 0.0;    ///< NaN while unknown
+  bool keeps = false;           ///< something is finished: an early end would have a result
 };
 
 /// Callbacks of a run. Both may be empty.

@@ -68,8 +68,15 @@ class Running {
     words.insert(words.end(), arguments.begin(), arguments.end());
     child_ = ::fork();
     if (child_ == 0) start(words, environment);
+    ::setpgid(child_, child_);  // here, too, since either may come first
   }
   void send(int signal) const { ::kill(child_, signal); }
+  /// To it and to all that it started, as a terminal does.
+  void send_to_group(int signal) const { ::kill(-child_, signal); }
+  bool alive() const {
+    siginfo_t info{};
+    return ::waitid(P_PID, static_cast<id_t>(child_), &info, WEXITED | WNOHANG | WNOWAIT) == 0 && info.si_pid == 0;
+  }
   Outcome wait() const {
     int status = 0;
     ::waitpid(child_, &status, 0);
@@ -79,6 +86,7 @@ class Running {
 
  private:
   [[noreturn]] void start(std::vector<std::string>& words, const std::vector<std::string>& environment) const {
+    ::setpgid(0, 0);
     const int out = ::open((scratch_ / ".out").c_str(), O_CREAT | O_TRUNC | O_WRONLY, 0600);
     const int err = ::open((scratch_ / ".err").c_str(), O_CREAT | O_TRUNC | O_WRONLY, 0600);
     ::dup2(out, 1);

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "clray/error.hpp"
+#include "io/output_folder.hpp"
 #include "unit/io_support.hpp"
 
 using namespace clray;
@@ -150,6 +151,82 @@ TEST_CASE("what is no result of clray is not touched") {
   CHECK(has(refusal("/proc/clray-out"), "cannot write in the folder /proc"));
   CHECK_THROWS_AS(check_output(scratch / "photos"), Error);
   CHECK_THROWS_AS(write(""), Error);
+}
+
+TEST_CASE("the current folder, and those that hold it, are no place for a result") {
+  Scratch scratch;
+  write(scratch / "out");
+  const fs::path before = fs::current_path();
+  for (const char* here : {"out", "."}) {
+    fs::current_path(scratch.path / here);
+    for (const char* target : {".", "./", "../out/.."}) {
+      CAPTURE(target);
+      std::string said;
+      try {
+        check_output(target);
+      } catch (const Error& error) {
+        said = error.what();
+      }
+      CHECK(has(said, "it is the current folder, or holds it"));
+    }
+    check_output("new");
+  }
+  fs::current_path(before);
+  CHECK(scratch.entries() == 1);
+}
+
+TEST_CASE("names that a summary claims lead nowhere else, and a folder is no file of a result") {
+  Scratch scratch;
+  spit(scratch / "mine", "text");
+  fs::create_directory(scratch / "out");
+  spit(scratch / "out/summary.json", "{\"clray\": \"1\", \"files\": [\"../mine\", \"photos\", \"summary.json\"]}");
+  write(scratch / "out", 2);
+  CHECK(slurp(scratch / "mine") == "text");
+  CHECK(scratch.entries() == 2);
+  fs::create_directory(scratch / "album");
+  fs::create_directory(scratch / "album/photos");
+  spit(scratch / "album/photos/cat.jpg", "meow");
+  spit(scratch / "album/summary.json", "{\"clray\": \"1\", \"files\": [\"photos\"]}");
+  CHECK(has(refusal(scratch / "album"), "it holds 'photos', which clray did not write"));
+  CHECK(slurp(scratch / "album/photos/cat.jpg") == "meow");
+}
+
+TEST_CASE("what comes into an older result while it is replaced is kept") {
+  Scratch scratch;
+  write(scratch / "out", 1);
+  {
+    io::OutputFolder place(scratch / "out");
+    spit(place.path("summary.json"), "{}");
+    place.commit();  // the older result stands at the temporary name now, until the end of the scope
+    spit(place.path("notes.txt"), "mine");
+  }
+  CHECK(slurp(scratch / "out/summary.json") == "{}");
+  REQUIRE(scratch.entries() == 2);
+  for (const auto& entry : fs::directory_iterator(scratch.path)) {
+    if (entry.path().filename() != "out") CHECK(slurp(entry.path() / "notes.txt") == "mine");
+  }
+}
+
+TEST_CASE("an interrupted result takes the place of one that has no more, and of no other") {
+  Scratch scratch;
+  Result cut = sample(7);
+  cut.partial = true;
+  cut.stopped_by = "interrupt";
+  cut.rays_total = 100;
+  const std::string out = scratch / "out";
+  CHECK(result_folder(cut, out) == out);
+  write_result(cut, io_test::scene(), out, no_plots());
+  CHECK(result_folder(cut, out) == out);
+  cut.rays_total = 99;
+  CHECK(result_folder(cut, out) == out + ".partial");
+  cut.rays_total = 101;
+  CHECK(result_folder(cut, out + "/") == out + "/");
+  write(out, 8);
+  CHECK(result_folder(cut, out) == out + ".partial");
+  cut.stopped_by = "time limit";  // as asked
+  CHECK(result_folder(cut, out) == out);
+  spit(scratch / "out.partial", "a file");  // found before anything is traced
+  CHECK_THROWS_WITH_AS(check_output(out), doctest::Contains("out.partial"), Error);
 }
 
 TEST_CASE("an empty folder is taken, a link is followed, parents are made") {
