@@ -191,10 +191,10 @@ std::vector<RigidMotion> motions_of(const Scene& scene, const Geometry& geometry
 
 Beams build_beams(const Scene& scene, const Geometry& geometry, const BeamRequest& request) {
   Beams out;
-  out.nodes = geometry.nodes;
   const bool instanced =
       !scene.trace.specialise || std::any_of(geometry.parts.begin(), geometry.parts.end(),
                                              [](const Part& part) { return part.hinged_component >= 0; });
+  if (instanced) out.nodes = geometry.nodes;
   std::vector<std::vector<RigidMotion>> all_motions;
   std::vector<Vec3> looks;  // toward the observer of a picture
   for (const Orientation& orientation : request.orientations) {

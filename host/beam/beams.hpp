@@ -45,7 +45,7 @@ struct Beams {
   std::vector<ClrayView> views;
   std::vector<ClrayConnection> connections;  ///< [view][connection]
   std::vector<ClrayInstance> instances;
-  std::vector<ClrayNode> nodes;      ///< the geometry's, then the top levels
+  std::vector<ClrayNode> nodes;      ///< the geometry's, then the top levels; empty: there are none
   std::vector<double> area_m2;       ///< that a ray of share 1 stands for, times the rays: of a beam, or of a pixel
   std::vector<ClrayStratum> strata;  ///< of all views' beams, see strata.hpp
   PictureFrame frame;

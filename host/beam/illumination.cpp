@@ -39,7 +39,8 @@ std::vector<Orientation> views_of_motion(const Scene& scene) {
   std::optional<ephemeris::RangeModel> ranges;
   if (scene.station) ranges.emplace(*scene.station);
   for (Orientation& view : views) {
-    if (ranges) view.source_range_m = range_or_0(Observer{}, &*ranges, view.time_s);
+    if (ranges && view.source_range_m == 0.0) view.source_range_m = range_or_0(Observer{}, &*ranges, view.time_s);
+    if (!view.ranges_m.empty()) continue;
     for (const Observer& observer : scene.observers)
       view.ranges_m.push_back(range_or_0(observer, ranges ? &*ranges : nullptr, view.time_s));
   }

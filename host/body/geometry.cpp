@@ -174,7 +174,7 @@ class Packer {
     };
     std::vector<Key> keys(raw_.size());
     for (std::uint32_t i = 0; i < raw_.size(); ++i) keys[i] = {numbers_[raw_[i].data], i};
-    const std::vector<std::uint32_t> material_rank = rank_materials();
+    const std::vector<std::uint32_t> material_rank = material_ranks(scene_);
     std::sort(keys.begin(), keys.end(), [&](const Key& x, const Key& y) {
       if (x.first != y.first) return x.first < y.first;
       const RawPrimitive &a = raw_[x.index], &b = raw_[y.index];
@@ -190,22 +190,6 @@ class Packer {
         sorted.push_back(raw);
     }
     raw_ = std::move(sorted);
-  }
-
-  // Compared by content, so that neither names nor places in a file matter.
-  std::vector<std::uint32_t> rank_materials() const {
-    std::vector<std::uint32_t> order(scene_.materials.size()), rank(scene_.materials.size());
-    std::iota(order.begin(), order.end(), 0u);
-    std::stable_sort(order.begin(), order.end(), [&](std::uint32_t x, std::uint32_t y) {
-      const Material &a = scene_.materials[x], &b = scene_.materials[y];
-      if (a.model != b.model) return a.model < b.model;
-      if (a.two_sided != b.two_sided) return a.two_sided;
-      if (a.parameters != b.parameters) return a.parameters < b.parameters;
-      if (a.infrared_reflectance != b.infrared_reflectance) return a.infrared_reflectance < b.infrared_reflectance;
-      return spectra_of(a) < spectra_of(b);
-    });
-    for (std::uint32_t k = 0; k < order.size(); ++k) rank[order[k]] = k;
-    return rank;
   }
 
   void share_planes() {
@@ -338,9 +322,28 @@ class Packer {
 
 bool Geometry::convex() const {
   if (!single) return false;
-  if (parts[0].shapes.empty()) return convex_triangles(shapes);
-  return (shape_traits_of(parts[0].shape_rows[0], shapes.data() + parts[0].shapes[0] + CLRAY_SHAPE_KEYS) &
-          CLRAY_SHAPE_CONVEX) != 0;
+  if (convex_) return *convex_;
+  convex_ = parts[0].shapes.empty()
+                ? convex_triangles(shapes)
+                : (shape_traits_of(parts[0].shape_rows[0], shapes.data() + parts[0].shapes[0] + CLRAY_SHAPE_KEYS) &
+                   CLRAY_SHAPE_CONVEX) != 0;
+  return *convex_;
+}
+
+// By content, so that neither names nor places in a file matter.
+std::vector<std::uint32_t> material_ranks(const Scene& scene) {
+  std::vector<std::uint32_t> order(scene.materials.size()), rank(scene.materials.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::stable_sort(order.begin(), order.end(), [&](std::uint32_t x, std::uint32_t y) {
+    const Material &a = scene.materials[x], &b = scene.materials[y];
+    if (a.model != b.model) return a.model < b.model;
+    if (a.two_sided != b.two_sided) return a.two_sided;
+    if (a.parameters != b.parameters) return a.parameters < b.parameters;
+    if (a.infrared_reflectance != b.infrared_reflectance) return a.infrared_reflectance < b.infrared_reflectance;
+    return spectra_of(a) < spectra_of(b);
+  });
+  for (std::uint32_t k = 0; k < order.size(); ++k) rank[order[k]] = k;
+  return rank;
 }
 
 Geometry build_geometry(const Scene& scene, bool trees) {

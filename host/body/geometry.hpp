@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "body/bvh.hpp"
@@ -53,10 +54,17 @@ struct Geometry {
   double radius = 0.0;
   double extent = 0.0;  ///< longest side of the box around it, over all hinge angles
 
-  /// Whether the body is convex, so that it hides no part of itself. It takes time for a mesh, so ask only if it
-  /// matters.
+  /// Whether the body is convex, so that it hides no part of itself. The first answer takes time for a mesh, so ask
+  /// only if it matters.
   bool convex() const;
+
+ private:
+  mutable std::optional<bool> convex_{};
 };
+
+/// How materials are ordered where faces of several lie in one place: the rank of each, by content. Nothing else of a
+/// material matters to the geometry.
+std::vector<std::uint32_t> material_ranks(const Scene& scene);
 
 /// Builds everything that does not depend on the view; without `trees`, what needs no rays. Throws Error(input) if
 /// nothing can be hit.

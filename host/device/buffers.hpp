@@ -38,6 +38,14 @@ void write_buffer(OpenedDevice& opened, const cl::Buffer& buffer, const std::vec
   });
 }
 
+/// Queues a copy of `count` elements into the buffer; `values` must stay until finish().
+template <class T>
+void queue_write(OpenedDevice& opened, const cl::Buffer& buffer, const T* values, std::size_t count) {
+  if (count == 0) return;
+  with_cl_errors(opened.info.name,
+                 [&] { opened.queue.enqueueWriteBuffer(buffer, CL_FALSE, 0, count * sizeof(T), values); });
+}
+
 /// A buffer that holds a copy of `count` elements.
 template <class T>
 cl::Buffer make_buffer(OpenedDevice& opened, const T* values, std::size_t count,

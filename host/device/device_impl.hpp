@@ -6,6 +6,7 @@
 #include <atomic>
 #include <map>
 #include <mutex>
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
@@ -26,6 +27,16 @@ struct Device::Impl {
     bool no_optimiser = false;                    ///< build with -cl-opt-disable
     std::map<std::string, std::string> defines;   ///< capability defines: from extensions and quirks.def
     std::map<std::string, cl::Program> programs;  ///< programs built so far, by build options and source
+    std::map<std::string, cl::Program> by_name;   ///< the same by program_name(), found without making a source
+    std::set<std::string> passed;                 ///< self-tests that passed in this process
+
+    /// Runs a self-test that throws where it fails, unless it passed under this name before.
+    template <class Test>
+    void test_once(const std::string& name, Test&& test) {
+      if (passed.count(name) != 0) return;
+      test();
+      passed.insert(name);
+    }
   };
   std::vector<Opened> devices;        ///< never empty
   std::mutex busy;                    ///< held by a DeviceUse

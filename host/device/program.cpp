@@ -73,8 +73,24 @@ cl::Program build_source(OpenedDevice& opened, const std::string& entry, const s
   });
 }
 
+std::string program_name(const std::string& entry, const ProgramOptions& options) {
+  std::string name = entry;
+  for (const auto& [key, value] : options.defines) name.append("\n").append(key).append("=").append(value);
+  for (const std::vector<int>* rows : {&options.brdfs, &options.shapes, &options.detectors}) {
+    name += "\n";
+    for (const int row : *rows) name.append(" ").append(std::to_string(row));
+  }
+  return name + fmt::format("\n{} {}", options.walk, options.warnings_are_errors);
+}
+
 cl::Program build_program(OpenedDevice& opened, const std::string& entry, const ProgramOptions& options) {
-  return build_source(opened, entry, program_source(opened, entry, options), options.warnings_are_errors);
+  const std::string name = program_name(entry, options);
+  const auto built = opened.by_name.find(name);
+  if (built != opened.by_name.end()) return built->second;
+  const cl::Program program =
+      build_source(opened, entry, program_source(opened, entry, options), options.warnings_are_errors);
+  opened.by_name.emplace(name, program);
+  return program;
 }
 
 }  // namespace clray

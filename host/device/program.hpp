@@ -19,6 +19,11 @@ struct ProgramOptions {
   std::vector<int> brdfs, shapes, detectors;   ///< row numbers used, in any order
   int walk = 0;                                ///< row number of the walk
   bool warnings_are_errors = false;            ///< also switched on by the environment's CLRAY_KERNEL_WERROR
+
+  bool operator==(const ProgramOptions& o) const {
+    return defines == o.defines && brdfs == o.brdfs && shapes == o.shapes && detectors == o.detectors &&
+           walk == o.walk && warnings_are_errors == o.warnings_are_errors;
+  }
 };
 
 /// Kernel files by their path under kernels/.
@@ -40,6 +45,9 @@ std::string flatten(const std::string& entry, const ProgramOptions& options, con
 /// The source that build_program compiles on that device: flatten with the device's capability defines.
 std::string program_source(const OpenedDevice& opened, const std::string& entry, const ProgramOptions& options,
                            const KernelFiles& files = embedded_kernels());
+
+/// Names a program of the embedded files: entry and options. Cheaper than its source, and as telling on one device.
+std::string program_name(const std::string& entry, const ProgramOptions& options);
 
 /// Builds `entry` for the device, or takes what was built before. Throws Error(device) with device, build options and
 /// the first lines of the log.

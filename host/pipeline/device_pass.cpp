@@ -9,10 +9,9 @@
 namespace clray {
 namespace {
 
-template <class T>
-cl::Buffer filled(OpenedDevice& opened, const Numbers<T>& numbers) {
-  return numbers.data != nullptr || numbers.count == 0 ? make_buffer(opened, numbers.data, numbers.count)
-                                                       : make_zero_buffer<T>(opened, numbers.count);
+/// Whether a buffer holds what the geometry alone decides.
+bool of_the_body(const std::string& buffer, const PassPlan& plan) {
+  return buffer == "primitives" || buffer == "shapes" || (buffer == "nodes" && plan.beams.nodes.empty());
 }
 
 /// Calls `function` with pieces of a buffer's numbers begin … end - 1 and where each starts, so that memory is reused
@@ -27,18 +26,55 @@ void each_piece(OpenedDevice& opened, const cl::Buffer& buffer, const SumRange& 
 }  // namespace
 
 DevicePass::DevicePass(OpenedDevice& device, const PassPlan& plan, const Geometry& geometry, const KernelFiles& files)
-    : opened_(device), constants_(plan.constants), asked_(all_views(plan)) {
+    : opened_(device) {
   const ProgramOptions& options = plan.program.options;
-  const std::string source = program_source(opened_, "trace.cl", options, files);
-  kernel_ = make_kernel(opened_, build_source(opened_, "trace.cl", source, options.warnings_are_errors), "clray_trace");
+  const bool embedded = &files == &embedded_kernels();
+  const cl::Program program =
+      embedded ? build_program(opened_, "trace.cl", options)
+               : build_source(opened_, "trace.cl", program_source(opened_, "trace.cl", options, files),
+                              options.warnings_are_errors);
+  kernel_ = make_kernel(opened_, program, "clray_trace");
+  fill(plan, geometry);
+}
+
+bool DevicePass::refill(const PassPlan& plan, const Geometry& geometry) {
+  if (!(plan.program.options == options_)) return false;
+  fill(plan, geometry);
+  return true;
+}
+
+template <class T>
+void DevicePass::fill(const char* name, const Numbers<T>& numbers, bool of_the_body) {
+  const std::size_t count = std::max<std::size_t>(numbers.count, 1);
+  const auto at = buffers_.find(name);
+  const bool fits = at != buffers_.end() && at->second.count >= count;
+  if (fits && (numbers.data == nullptr || of_the_body)) return;  // drains leave zeros, and a pass has one body
+  cl::Buffer buffer;
+  if (numbers.data == nullptr && numbers.count > 0) {
+    buffer = make_zero_buffer<T>(opened_, numbers.count);
+  } else if (fits) {
+    queue_write(opened_, at->second.buffer, numbers.data, numbers.count);
+    return;
+  } else {
+    buffer = make_buffer(opened_, numbers.data, numbers.count);
+  }
+  buffers_[name] = {buffer, count};
+}
+
+void DevicePass::fill(const PassPlan& plan, const Geometry& geometry) {
+  options_ = plan.program.options;
+  constants_ = plan.constants;
+  asked_ = all_views(plan);
   check_sums_size(opened_, plan.layout.values);
-  has_wide_ = options.defines.at("CLRAY_WIDE") == "1";
+  has_wide_ = options_.defines.at("CLRAY_WIDE") == "1";
   const PassBuffers in(plan, geometry);
-#define CLRAY_FILL(type, name) buffers_[#name] = filled(opened_, in.name);
+#define CLRAY_FILL(type, name) fill(#name, in.name, of_the_body(#name, plan));
   CLRAY_BUFFERS(CLRAY_FILL)
 #undef CLRAY_FILL
+  finish(opened_);  // what was queued reads `in`
+  first_argument_ = 0;
   with_cl_errors(opened_.info.name, [&] {
-#define CLRAY_BIND(type, name) kernel_.setArg(first_argument_++, buffers_.at(#name));
+#define CLRAY_BIND(type, name) kernel_.setArg(first_argument_++, buffers_.at(#name).buffer);
     CLRAY_BUFFERS(CLRAY_BIND)
 #undef CLRAY_BIND
   });
@@ -48,23 +84,24 @@ void DevicePass::clear(const PassPlan& plan) {
   for (const SumBlock& block : plan.layout.blocks) {
     const SumRange range = range_of(plan.layout, block, asked_.front(), asked_.back() + 1);
     if (block.counts()) {
-      zero_buffer<std::uint32_t>(opened_, buffers_.at("counts"), range.end - range.begin, range.begin);
+      zero_buffer<std::uint32_t>(opened_, buffers_.at("counts").buffer, range.end - range.begin, range.begin);
     } else {
-      zero_buffer<std::int64_t>(opened_, buffers_.at("sums"), range.end - range.begin, range.begin);
-      if (has_wide_) zero_buffer<std::int64_t>(opened_, buffers_.at("wide"), range.end - range.begin, range.begin);
+      zero_buffer<std::int64_t>(opened_, buffers_.at("sums").buffer, range.end - range.begin, range.begin);
+      if (has_wide_)
+        zero_buffer<std::int64_t>(opened_, buffers_.at("wide").buffer, range.end - range.begin, range.begin);
     }
   }
-  zero_buffer<std::int64_t>(opened_, buffers_.at("counters"), CLRAY_COUNTERS * plan.layout.shape.views);
+  zero_buffer<std::int64_t>(opened_, buffers_.at("counters").buffer, CLRAY_COUNTERS * plan.layout.shape.views);
 }
 
 void DevicePass::set_work(std::uint32_t epoch, const std::vector<std::uint32_t>& views) {
   if (constants_.epoch != epoch) {
     constants_.epoch = epoch;
-    write_buffer(opened_, buffers_.at("pass"), std::vector<ClrayPass>{constants_});
+    write_buffer(opened_, buffers_.at("pass").buffer, std::vector<ClrayPass>{constants_});
   }
   if (asked_ == views) return;
   asked_ = views;
-  write_buffer(opened_, buffers_.at("asked"), asked_);
+  write_buffer(opened_, buffers_.at("asked").buffer, asked_);
 }
 
 void DevicePass::launch_items(std::uint64_t first, std::uint32_t items, const PointBlock& block, std::uint32_t group) {
@@ -84,19 +121,20 @@ void DevicePass::drain(const PassPlan& plan, Sums* sums) {
     const SumRange range = range_of(plan.layout, block, asked_.front(), asked_.back() + 1);
     if (block.counts()) {
       const bool greatest = block.scale == SumScale::greatest;
-      each_piece<std::uint32_t>(opened_, buffers_.at("counts"), range, [&](std::uint64_t first, const auto& more) {
-        for (std::size_t k = 0; k < more.size(); ++k) {
-          if (!greatest) {
-            sums->counts.add(first + k, more[k]);
-          } else if (more[k] > sums->counts[first + k]) {
-            sums->counts.set(first + k, more[k]);
-          }
-        }
-      });
+      each_piece<std::uint32_t>(opened_, buffers_.at("counts").buffer, range,
+                                [&](std::uint64_t first, const auto& more) {
+                                  for (std::size_t k = 0; k < more.size(); ++k) {
+                                    if (!greatest) {
+                                      sums->counts.add(first + k, more[k]);
+                                    } else if (more[k] > sums->counts[first + k]) {
+                                      sums->counts.set(first + k, more[k]);
+                                    }
+                                  }
+                                });
       continue;
     }
     const auto add = [&](const char* buffer, std::int64_t unit) {
-      each_piece<std::int64_t>(opened_, buffers_.at(buffer), range, [&](std::uint64_t first, const auto& more) {
+      each_piece<std::int64_t>(opened_, buffers_.at(buffer).buffer, range, [&](std::uint64_t first, const auto& more) {
         for (std::size_t k = 0; k < more.size(); ++k) sums->values.add(first + k, static_cast<Sum>(more[k]) * unit);
       });
     };
@@ -104,7 +142,7 @@ void DevicePass::drain(const PassPlan& plan, Sums* sums) {
     if (has_wide_) add("wide", 4294967296);
   }
   const auto events =
-      read_buffer<std::int64_t>(opened_, buffers_.at("counters"), CLRAY_COUNTERS * plan.layout.shape.views);
+      read_buffer<std::int64_t>(opened_, buffers_.at("counters").buffer, CLRAY_COUNTERS * plan.layout.shape.views);
   for (std::size_t k = 0; k < events.size(); ++k)
     sums->events[k / CLRAY_COUNTERS][k % CLRAY_COUNTERS] += static_cast<std::uint64_t>(events[k]);
   clear(plan);

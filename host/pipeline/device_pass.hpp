@@ -26,6 +26,10 @@ class DevicePass {
   DevicePass(OpenedDevice& device, const PassPlan& plan, const Geometry& geometry,
              const KernelFiles& files = embedded_kernels());
 
+  /// Makes it that of another plan of the same body, where it has the same program: only what differs is copied. False
+  /// where the program is another; it is then as it was. What was summed must have been drained or cleared.
+  bool refill(const PassPlan& plan, const Geometry& geometry);
+
   /// What the next launches trace: points of an epoch's scrambles, of these views (ascending).
   void set_work(std::uint32_t epoch, const std::vector<std::uint32_t>& views);
   /// Runs work-items first … first + items - 1 of a block; returns when they are done.
@@ -38,9 +42,18 @@ class DevicePass {
   std::uint64_t slice_items = 1;  ///< of the next launch
 
  private:
+  struct Kept {
+    cl::Buffer buffer;
+    std::size_t count = 0;
+  };
+  void fill(const PassPlan& plan, const Geometry& geometry);
+  template <class T>
+  void fill(const char* name, const Numbers<T>& numbers, bool of_the_body);
+
   OpenedDevice& opened_;
   cl::Kernel kernel_;
-  std::map<std::string, cl::Buffer> buffers_;  // by the names of shared/buffers.h
+  ProgramOptions options_;
+  std::map<std::string, Kept> buffers_;  // by the names of shared/buffers.h
   ClrayPass constants_;
   std::vector<std::uint32_t> asked_;  // views that launches trace
   bool has_wide_ = false;

@@ -46,9 +46,10 @@ void ItemBatch::clear() {
 ExactDevice::ExactDevice(OpenedDevice& device, const ProgramOptions& options, const ExactNumbers& numbers,
                          std::uint64_t bins)
     : opened_(device), numbers_(numbers), bin_count_(bins) {
-  const std::string source = program_source(opened_, "exact.cl", options);
-  kernel_ = make_kernel(opened_, build_source(opened_, "exact.cl", source, options.warnings_are_errors), "clray_exact");
-  run_exact_self_test(opened_, source, kernel_, numbers_);
+  kernel_ = make_kernel(opened_, build_program(opened_, "exact.cl", options), "clray_exact");
+  opened_.test_once("solved\n" + program_name("exact.cl", options), [&] {
+    run_exact_self_test(opened_, program_source(opened_, "exact.cl", options), kernel_, numbers_);
+  });
   bins_ = make_zero_buffer<i64>(opened_, bins);
 }
 

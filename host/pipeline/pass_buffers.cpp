@@ -34,7 +34,7 @@ PassBuffers::PassBuffers(const PassPlan& plan, const Geometry& geometry) {
   own_asked_ = all_views(plan);
   asked = all_of(own_asked_);
   connections = all_of(plan.beams.connections);
-  nodes = all_of(plan.beams.nodes);
+  nodes = all_of(plan.beams.nodes.empty() ? geometry.nodes : plan.beams.nodes);
   primitives = all_of(geometry.primitives);
   shapes = all_of(geometry.shapes);
   instances = all_of(plan.beams.instances);

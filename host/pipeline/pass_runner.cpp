@@ -27,14 +27,22 @@ constexpr std::uint32_t kPacketChunk = 256;             // points of each replic
 
 }  // namespace
 
-PassRunner::PassRunner(Device& device, const PassPlan& plan, const Geometry& geometry, const TraceOptions& options)
+PassRunner::PassRunner(Device& device, const PassPlan& plan, const Geometry& geometry, const TraceOptions& options,
+                       KeptPass* kept)
     : plan_(plan), options_(options) {
   const double start = now();
-  for (OpenedDevice& opened : device.impl().devices) run_traced_self_test(opened, plan, options.specialise);
-  for (OpenedDevice& opened : device.impl().devices) {
-    devices_.push_back(std::make_unique<DevicePass>(opened, plan, geometry));
-    devices_.back()->slice_items = in_packets(plan) ? 4 : 4096;
+  const std::string name = "traced\n" + program_name("trace.cl", plan.program.options);
+  for (OpenedDevice& opened : device.impl().devices)
+    opened.test_once(name, [&] { run_traced_self_test(opened, plan, options.specialise); });
+  devices_ = std::move(*kept);
+  kept->clear();
+  devices_.resize(device.impl().devices.size());
+  for (std::size_t d = 0; d < devices_.size(); ++d) {
+    if (devices_[d] != nullptr && devices_[d]->refill(plan, geometry)) continue;
+    devices_[d] = std::make_shared<DevicePass>(device.impl().devices[d], plan, geometry);
+    devices_[d]->slice_items = in_packets(plan) ? 4 : 4096;
   }
+  *kept = devices_;
   compile_seconds_ = now() - start;
 }
 

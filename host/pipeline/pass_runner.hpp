@@ -32,10 +32,15 @@ class PointRunner {
   double compile_seconds_ = 0.0;
 };
 
+/// Device passes that stay when their runner goes, for the next one of the same body.
+using KeptPass = std::vector<std::shared_ptr<DevicePass>>;
+
 /// Traces points as rays: one program and its buffers on every opened device.
 class PassRunner : public PointRunner {
  public:
-  PassRunner(Device& device, const PassPlan& plan, const Geometry& geometry, const TraceOptions& options);
+  /// Takes what suits the plan from *kept, and leaves there what the next runner may take.
+  PassRunner(Device& device, const PassPlan& plan, const Geometry& geometry, const TraceOptions& options,
+             KeptPass* kept);
   ~PassRunner() override;
 
   /// Adds the points that are missing.
@@ -49,7 +54,7 @@ class PassRunner : public PointRunner {
 
   const PassPlan& plan_;
   const TraceOptions& options_;
-  std::vector<std::unique_ptr<DevicePass>> devices_;
+  KeptPass devices_;
 };
 
 }  // namespace clray

@@ -14,10 +14,10 @@ constexpr std::size_t kGroup = 64;  // work-items
 
 SampleDevice::SampleDevice(OpenedDevice& device, const ProgramOptions& options, const ExactNumbers& numbers)
     : opened_(device), numbers_(numbers) {
-  const std::string source = program_source(opened_, "exact.cl", options);
-  const cl::Program program = build_source(opened_, "exact.cl", source, options.warnings_are_errors);
-  kernel_ = make_kernel(opened_, program, "clray_sample");
-  run_sample_self_test(opened_, source, kernel_, numbers_);
+  kernel_ = make_kernel(opened_, build_program(opened_, "exact.cl", options), "clray_sample");
+  opened_.test_once("sampled\n" + program_name("exact.cl", options), [&] {
+    run_sample_self_test(opened_, program_source(opened_, "exact.cl", options), kernel_, numbers_);
+  });
 }
 
 SampleDevice::SampleDevice(OpenedDevice& device, const cl::Kernel& kernel, const ExactNumbers& numbers)

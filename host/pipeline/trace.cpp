@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// The call that traces a scene: geometry, passes, and the result.
+// The call that traces a scene: what is prepared, passes, and the result.
 #include "clray/trace.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <utility>
 
-#include "body/geometry.hpp"
 #include "clray/error.hpp"
 #include "clray/pass.hpp"
+#include "clray/prepared.hpp"
 #include "clray/result.hpp"
 #include "pipeline/clock.hpp"
 #include "pipeline/exact_pass.hpp"
@@ -19,6 +19,7 @@
 #include "pipeline/pass_driver.hpp"
 #include "pipeline/pass_runner.hpp"
 #include "pipeline/plan.hpp"
+#include "pipeline/preparation.hpp"
 #include "pipeline/tiles_runner.hpp"
 #include "pipeline/warnings.hpp"
 #include "text/hash.hpp"
@@ -42,141 +43,227 @@ void add_unique(const std::vector<std::string>& from, std::vector<std::string>* 
   }
 }
 
-/// The body, with trees only where a pass has rays, and what the passes are for.
-Geometry geometry_of(const Scene& scene, std::vector<PassRequest>* requests) {
-  Geometry geometry = build_geometry(scene, !may_need_no_rays(scene));
-  *requests = pass_requests(scene, geometry);
+/// What is known of a scene before the first ray.
+struct Planned {
+  const Geometry& geometry;
+  std::vector<PassPlan> plans;
+};
+
+/// The body, with trees only where a pass has rays, and the plans of its passes.
+Planned plan(Preparation& kept, const Scene& scene) {
+  const Geometry* geometry = &kept.body(scene, !may_need_no_rays(scene));
+  std::vector<PassRequest> requests = pass_requests(scene, *geometry);
   const bool rays =
-      std::any_of(requests->begin(), requests->end(), [](const PassRequest& r) { return !r.without_rays(); });
-  return rays && !geometry.trees ? build_geometry(scene) : geometry;
+      std::any_of(requests.begin(), requests.end(), [](const PassRequest& r) { return !r.without_rays(); });
+  if (rays && !geometry->trees) geometry = &kept.body(scene, true);
+  std::vector<PassPlan> plans = plan_passes(scene, *geometry, std::move(requests));
+  fit_to(kept.device(), &plans);
+  return {*geometry, std::move(plans)};
 }
 
-/// Solves a pass. Adds to the seconds spent compiling and tracing.
-PassOutcome solved(const Scene& scene, Device& device, const PassPlan& plan, const Geometry& geometry,
-                   const TraceHooks& hooks, double time_left_s, double* compiling, double* tracing) {
-  ExactPass pass(device, plan, geometry);
-  *compiling += pass.compile_seconds();
-  const double begin = now();
-  PassOutcome outcome = solve_pass(pass, scene.trace, hooks, time_left_s);
-  *tracing += now() - begin;
-  return outcome;
-}
+/// Traces the passes of a scene one by one and makes their result.
+class Tracer {
+ public:
+  Tracer(Preparation& kept, const Scene& scene, const TraceHooks& hooks)
+      : kept_(kept), device_(kept.device()), scene_(scene), hooks_(hooks) {}
 
-/// Takes a pass along its course. Adds to the seconds spent compiling and tracing.
-PassOutcome driven(const Scene& scene, const PassPlan& plan, const Geometry& geometry, PointRunner& runner,
-                   const TraceHooks& hooks, double time_left_s, double* compiling, double* tracing) {
-  *compiling += runner.compile_seconds();
-  const double begin = now();
-  PassOutcome outcome = drive_pass(geometry, plan, runner, scene.trace, hooks, time_left_s);
-  *tracing += now() - begin;
-  return outcome;
-}
-
-/// Traces or solves a pass, or solves its first bounce and traces the rest. Adds to the seconds spent compiling and
-/// tracing.
-PassOutcome outcome_of(const Scene& scene, Device& device, const PassPlan& plan, const Geometry& geometry,
-                       const TraceHooks& hooks, double time_left_s, double* compiling, double* tracing) {
-  if (plan.request.exact()) return solved(scene, device, plan, geometry, hooks, time_left_s, compiling, tracing);
-  if (plan.request.tiles()) {
-    TilesRunner runner(device, plan, geometry);
-    return driven(scene, plan, geometry, runner, hooks, time_left_s, compiling, tracing);
-  }
-  double solving = 0.0;
-  if (plan.first) {
-    PassOutcome first = solved(scene, device, plan.first->plan, geometry, hooks, time_left_s, compiling, &solving);
-    *tracing += solving;
-    if (first.sums.empty()) return first;
-    plan.first->sums = std::move(first.sums);
-    if (time_left_s > 0.0) time_left_s = std::max(1e-6, time_left_s - solving);
-  }
-  PassRunner runner(device, plan, geometry, scene.trace);
-  PassOutcome outcome = driven(scene, plan, geometry, runner, hooks, time_left_s, compiling, tracing);
-  for (ErrorPoint& point : outcome.errors) point.seconds += solving;
-  return outcome;
-}
-
-}  // namespace
-
-Result trace(const Scene& scene, Device& device, const TraceHooks& hooks) {
-  check_scene(scene);
-  Result result;
-  result.instants = pass_instants(scene);
-  const DeviceUse use(device);
-  const double start = now();
-  result.device = device.info();
-  result.seed = scene.trace.seed;
-  result.replicates = scene.trace.replicates;
-  std::vector<PassRequest> requests;
-  const Geometry geometry = geometry_of(scene, &requests);
-  result.mesh = geometry.report;
-  result.extent_m = geometry.extent;
-  std::vector<PassPlan> plans = plan_passes(scene, geometry, std::move(requests));
-  fit_to(device, &plans);
-  result.seconds.bvh = now() - start;
-  result.digest = kFnvStart;
-  bool target_reached = true;
-  double spent = 0.0;
-  Ending ending;
-  LitRecords lit;
-  for (const PassPlan& plan : plans) {
-    const double left = scene.trace.time_limit_s > 0.0 ? std::max(1e-6, scene.trace.time_limit_s - spent) : 0.0;
-    const PassOutcome outcome = outcome_of(scene, device, plan, geometry, hooks, left, &result.seconds.compile, &spent);
-    if (outcome.sums.empty()) {
-      result.partial = true;
-      result.warnings.push_back("stopped before the first result");
-      continue;
+  Result run() {
+    result_.instants = pass_instants(scene_);
+    const DeviceUse use(device_);
+    const double start = now();
+    result_.device = device_.info();
+    result_.seed = scene_.trace.seed;
+    result_.replicates = scene_.trace.replicates;
+    const Planned planned = plan(kept_, scene_);
+    const Geometry& geometry = planned.geometry;
+    result_.mesh = geometry.report;
+    result_.extent_m = geometry.extent;
+    result_.seconds.bvh = now() - start;
+    result_.digest = kFnvStart;
+    for (std::size_t k = 0; k < planned.plans.size(); ++k) {
+      const double left = scene_.trace.time_limit_s > 0.0 ? std::max(1e-6, scene_.trace.time_limit_s - spent_) : 0.0;
+      take(planned.plans[k], geometry, outcome_of(planned.plans[k], geometry, kept_.pass(k), left));
     }
-    result.partial = result.partial || outcome.partial;
-    result.target_asked = result.target_asked || outcome.target_asked;
+    end(geometry, start);
+    return std::move(result_);
+  }
+
+ private:
+  /// Traces or solves a pass, or solves its first bounce and traces the rest.
+  PassOutcome outcome_of(const PassPlan& plan, const Geometry& geometry, KeptPass* kept, double time_left_s) {
+    if (plan.request.exact()) return solved(plan, geometry, time_left_s);
+    if (plan.request.tiles()) {
+      TilesRunner runner(device_, plan, geometry);
+      return driven(plan, geometry, runner, time_left_s);
+    }
+    const double before = spent_;
+    if (plan.first) {
+      PassOutcome first = solved(plan.first->plan, geometry, time_left_s);
+      if (first.sums.empty()) return first;
+      plan.first->sums = std::move(first.sums);
+    }
+    const double solving = spent_ - before;
+    if (time_left_s > 0.0) time_left_s = std::max(1e-6, time_left_s - solving);
+    PassRunner runner(device_, plan, geometry, scene_.trace, kept);
+    PassOutcome outcome = driven(plan, geometry, runner, time_left_s);
+    for (ErrorPoint& point : outcome.errors) point.seconds += solving;
+    return outcome;
+  }
+
+  PassOutcome solved(const PassPlan& plan, const Geometry& geometry, double time_left_s) {
+    ExactPass pass(device_, plan, geometry);
+    result_.seconds.compile += pass.compile_seconds();
+    const double begin = now();
+    PassOutcome outcome = solve_pass(pass, scene_.trace, hooks_, time_left_s);
+    spent_ += now() - begin;
+    return outcome;
+  }
+
+  PassOutcome driven(const PassPlan& plan, const Geometry& geometry, PointRunner& runner, double time_left_s) {
+    result_.seconds.compile += runner.compile_seconds();
+    const double begin = now();
+    PassOutcome outcome = drive_pass(geometry, plan, runner, scene_.trace, hooks_, time_left_s);
+    spent_ += now() - begin;
+    return outcome;
+  }
+
+  /// Adds what a pass found to the result.
+  void take(const PassPlan& plan, const Geometry& geometry, const PassOutcome& outcome) {
+    if (outcome.sums.empty()) {
+      result_.partial = true;
+      result_.warnings.push_back("stopped before the first result");
+      return;
+    }
+    result_.partial = result_.partial || outcome.partial;
+    result_.target_asked = result_.target_asked || outcome.target_asked;
     if (outcome.target_asked) {
       // The result's ending is that of the first pass that missed the target, else of the one with the largest error.
-      if (target_reached && (!outcome.target_reached || !(outcome.ending.half_width <= ending.half_width)))
-        ending = outcome.ending;
-      target_reached = target_reached && outcome.target_reached;
-    } else if (!result.target_asked) {
-      ending = outcome.ending;
+      if (target_reached_ && (!outcome.target_reached || !(outcome.ending.half_width <= ending_.half_width)))
+        ending_ = outcome.ending;
+      target_reached_ = target_reached_ && outcome.target_reached;
+    } else if (!result_.target_asked) {
+      ending_ = outcome.ending;
     }
     const PictureSize& size = plan.request.picture;
     const std::uint64_t per_point =
         plan.request.replicates * (plan.request.pixels ? static_cast<std::uint64_t>(size.width) * size.height : 1);
     const std::vector<std::uint64_t>& points = outcome.sums.points;
-    if (result.rays == 0 && !plan.request.exact())
-      result.rays = *std::max_element(points.begin(), points.end()) * per_point;
-    result.rays_total += outcome.rays_total;
-    result.digest = digest_of(result.digest, plan, outcome.sums);
-    result.errors.insert(result.errors.end(), outcome.errors.begin(), outcome.errors.end());
-    add_unique(plan.program.kept, &result.kept);
-    add_unique(plan.program.left_out, &result.left_out);
-    add_results(scene, plan, outcome, &result, &lit);
-    add_unique(doubtful_claims(plan, geometry, outcome.sums), &result.warnings);
+    if (result_.rays == 0 && !plan.request.exact())
+      result_.rays = *std::max_element(points.begin(), points.end()) * per_point;
+    result_.rays_total += outcome.rays_total;
+    result_.digest = digest_of(result_.digest, plan, outcome.sums);
+    result_.errors.insert(result_.errors.end(), outcome.errors.begin(), outcome.errors.end());
+    add_unique(plan.program.kept, &result_.kept);
+    add_unique(plan.program.left_out, &result_.left_out);
+    add_results(scene_, plan, outcome, &result_, &lit_);
+    add_unique(doubtful_claims(plan, geometry, outcome.sums), &result_.warnings);
   }
-  result.target_reached = result.target_asked && target_reached && !result.partial;
-  if (result.target_asked) result.target_percent = scene.trace.target_error_percent;
-  result.reached_percent = 100.0 * ending.half_width;
-  result.stopped_by = ending.by;
-  result.seconds.trace = spent;
-  result.seconds.total = now() - start;
-  check_diagnostics(result, scene.trace.allow_failures);
-  order_results(scene, &result);
-  if (geometry.conflicts != 0)
-    result.warnings.push_back(fmt::format(
-        "faces of different materials overlap in one plane and look the same way ({}): the first in canonical "
-        "order is hit; remove the others",
-        text::counted(geometry.conflicts, "face")));
-  std::vector<std::string> early = std::move(result.warnings);
-  add_warnings(scene, ending, lit, &result);
-  result.warnings.insert(result.warnings.end(), early.begin(), early.end());
-  add_unique(pass_warnings(scene), &result.warnings);
-  return result;
+
+  void end(const Geometry& geometry, double start) {
+    result_.target_reached = result_.target_asked && target_reached_ && !result_.partial;
+    if (result_.target_asked) result_.target_percent = scene_.trace.target_error_percent;
+    result_.reached_percent = 100.0 * ending_.half_width;
+    result_.stopped_by = ending_.by;
+    result_.seconds.trace = spent_;
+    result_.seconds.total = now() - start;
+    check_diagnostics(result_, scene_.trace.allow_failures);
+    order_results(scene_, &result_);
+    if (geometry.conflicts != 0)
+      result_.warnings.push_back(fmt::format(
+          "faces of different materials overlap in one plane and look the same way ({}): the first in canonical "
+          "order is hit; remove the others",
+          text::counted(geometry.conflicts, "face")));
+    std::vector<std::string> early = std::move(result_.warnings);
+    add_warnings(scene_, ending_, lit_, &result_);
+    result_.warnings.insert(result_.warnings.end(), early.begin(), early.end());
+    add_unique(pass_warnings(scene_), &result_.warnings);
+  }
+
+  Preparation& kept_;
+  Device& device_;
+  const Scene& scene_;
+  const TraceHooks& hooks_;
+  Result result_;
+  bool target_reached_ = true;
+  double spent_ = 0.0;  // s of tracing
+  Ending ending_;
+  LitRecords lit_;
+};
+
+Result trace_with(Preparation& kept, const Scene& scene, const TraceHooks& hooks) {
+  check_scene(scene);
+  try {
+    return Tracer(kept, scene, hooks).run();
+  } catch (...) {
+    kept.drop_passes();  // their sums may be anything
+    throw;
+  }
+}
+
+/// Builds the programs of a scene and copies what they read to the devices.
+void prepare(Preparation& kept, const Scene& scene) {
+  check_scene(scene);
+  const DeviceUse use(kept.device());
+  const Planned planned = plan(kept, scene);
+  for (std::size_t k = 0; k < planned.plans.size(); ++k) {
+    const PassPlan& plan = planned.plans[k];
+    if (plan.request.exact()) ExactPass(kept.device(), plan, planned.geometry);
+    if (plan.request.tiles()) TilesRunner(kept.device(), plan, planned.geometry);
+    if (plan.request.without_rays()) continue;
+    if (plan.first) ExactPass(kept.device(), plan.first->plan, planned.geometry);
+    PassRunner(kept.device(), plan, planned.geometry, scene.trace, kept.pass(k));
+  }
+}
+
+}  // namespace
+
+struct Prepared::Impl {
+  Impl(const Scene& s, Device& device) : scene(s), kept(device) {}
+  Scene scene;
+  Preparation kept;
+};
+
+Prepared::Prepared(const Scene& scene, Device& device) : impl_(std::make_unique<Impl>(scene, device)) {
+  prepare(impl_->kept, scene);
+}
+Prepared::~Prepared() = default;
+Prepared::Prepared(Prepared&&) noexcept = default;
+Prepared& Prepared::operator=(Prepared&&) noexcept = default;
+
+const Scene& Prepared::scene() const {
+  if (!impl_) throw Error(ErrorCode::usage, "this Prepared was moved from");
+  return impl_->scene;
+}
+
+Result Prepared::trace(const TraceHooks& hooks) {
+  return trace(scene(), hooks);
+}
+
+Result Prepared::trace(const std::vector<Orientation>& views, const TraceHooks& hooks) {
+  Scene scene = this->scene();
+  scene.motion.reset();
+  scene.pass.reset();
+  scene.views = views;
+  return trace(scene, hooks);
+}
+
+Result Prepared::trace(const Scene& scene, const TraceHooks& hooks) {
+  if (!impl_) throw Error(ErrorCode::usage, "this Prepared was moved from");
+  return trace_with(impl_->kept, scene, hooks);
+}
+
+Result trace(const Scene& scene, Device& device, const TraceHooks& hooks) {
+  Preparation kept(device);
+  return trace_with(kept, scene, hooks);
 }
 
 std::string kernel_source(const Scene& scene, Device& device) {
   check_scene(scene);
   const DeviceUse use(device);
-  const Geometry geometry = build_geometry(scene);
-  std::vector<PassPlan> plans = plan_passes(scene, geometry);
-  fit_to(device, &plans);
-  return program_source(device.impl().devices.front(), plans.front().program.entry, plans.front().program.options);
+  Preparation kept(device);
+  const Planned planned = plan(kept, scene);
+  const Specialised& program = planned.plans.front().program;
+  return program_source(device.impl().devices.front(), program.entry, program.options);
 }
 
 }  // namespace clray

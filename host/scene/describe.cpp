@@ -165,6 +165,7 @@ std::string describe_scene(const Scene& scene) {
   });
   if (!more_observers.empty()) lines.add({"", more_observers});
   if (scene.motion) lines.add({"motion", motion_text(*scene.motion)});
+  if (!scene.views.empty()) lines.add({"views", fmt::format("{}, given one by one", scene.views.size())});
   if (scene.pass) {
     lines.add({"pass", key_text(*scene.pass)});
     lines.add({"attitude", key_text(scene.pass->attitude)});

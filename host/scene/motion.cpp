@@ -176,6 +176,16 @@ std::vector<Orientation> table_orientations(const Scene& scene) {
   return all;
 }
 
+std::vector<Orientation> given_orientations(const Scene& scene) {
+  std::vector<Orientation> all = scene.views;
+  for (Orientation& o : all) {
+    if (!o.observers.empty()) continue;
+    for (const Observer& observer : scene.observers)
+      o.observers.push_back(at_source(observer, scene.source) ? o.source : observer.direction);
+  }
+  return all;
+}
+
 }  // namespace
 
 std::pair<double, double> motion_span(const Motion& motion) {
@@ -204,6 +214,7 @@ std::size_t orientation_count(const Motion& motion) {
 }
 
 std::vector<Orientation> orientations(const Scene& scene) {
+  if (!scene.views.empty()) return given_orientations(scene);
   if (scene.motion && !scene.motion->attitudes.empty()) return table_orientations(scene);
   if (scene.motion) return spin_orientations(scene);
   Orientation only;

@@ -186,6 +186,38 @@ void check_motion(const Motion& m) {
   orientation_count(m);
 }
 
+void check_view(const std::string& where, const Scene& scene, const Orientation& view) {
+  check_number(where + ".time_s", view.time_s, {-kInfinity, kInfinity, false, false});
+  check_unit(where + ".source", view.source);
+  const double length = glm::dot(view.body_to_space, view.body_to_space);
+  if (!(std::fabs(length - 1.0) <= 1e-6)) fail(where + ".body_to_space", "expected a unit quaternion");
+  const auto check_size = [&](const char* member, std::size_t found) {
+    if (found != 0 && found != scene.observers.size())
+      fail(where + member,
+           fmt::format("expected {}, one per observer, or none, found {}", scene.observers.size(), found));
+  };
+  check_size(".observers", view.observers.size());
+  check_size(".ranges_m", view.ranges_m.size());
+  for (std::size_t o = 0; o < view.observers.size(); ++o) {
+    const std::string each = fmt::format("{}.observers[{}]", where, o);
+    check_unit(each, view.observers[o]);
+    if (at_source(scene.observers[o], scene.source) && view.observers[o] != view.source)
+      fail(each, "is not the view's source, where this observer is");
+  }
+  for (const double range : view.ranges_m) check_number(where + ".ranges_m", range, kNotNegative);
+  check_number(where + ".source_range_m", view.source_range_m, kNotNegative);
+  check_number(where + ".light", view.light, kNotNegative);
+}
+
+void check_views(const Scene& scene) {
+  if (scene.views.empty()) return;
+  if (scene.motion || scene.pass)
+    fail("views", fmt::format("given beside a {}; expected only one of them", scene.motion ? "motion" : "pass"));
+  if (!(static_cast<double>(scene.views.size()) <= kMaxOrientations))
+    fail("views", fmt::format("expected at most {}, found {}", kMaxOrientations, scene.views.size()));
+  for (std::size_t i = 0; i < scene.views.size(); ++i) check_view(fmt::format("views[{}]", i), scene, scene.views[i]);
+}
+
 void check_trace(const TraceOptions& o) {
   check_keys("trace", o);
   check_number("trace.work_group_size", o.work_group_size, {1.0, 1024.0, true, true});
@@ -329,6 +361,7 @@ void check_scene(const Scene& scene) {
   const std::string dark = source_fault(scene);
   if (!dark.empty()) fail("source.bands", dark);
   if (scene.motion) check_motion(*scene.motion);
+  check_views(scene);
   if (scene.station) check_keys("station", *scene.station);
   check_pass(scene);
   check_ranging(scene);

@@ -64,6 +64,7 @@ struct Largest {
 };
 
 const char* step_key(const Scene& scene) {
+  if (!scene.views.empty()) return "views";
   if (scene.motion) return scene.motion->attitudes.empty() ? "motion.step_deg" : "motion.attitudes";
   if (!scene.pass->times_s.empty()) return "pass.times";
   return scene.pass->step_s > 0.0 ? "pass.step_s" : "pass.step_deg";
@@ -83,9 +84,10 @@ namespace {
 
 SceneSizes sizes_of(const Scene& scene, Largest* largest) {
   SceneSizes sizes;
-  const double views = scene.motion ? static_cast<double>(orientation_count(*scene.motion))
-                       : scene.pass ? instants_of(*scene.pass)
-                                    : 1.0;
+  const double views = !scene.views.empty() ? static_cast<double>(scene.views.size())
+                       : scene.motion       ? static_cast<double>(orientation_count(*scene.motion))
+                       : scene.pass         ? instants_of(*scene.pass)
+                                            : 1.0;
   const double observers = static_cast<double>(std::max<std::size_t>(scene.observers.size(), 1));
   const double variants = static_cast<double>(std::max<std::size_t>(scene.variants.size(), 1));
   const double replicates = static_cast<double>(scene.trace.replicates);

@@ -59,20 +59,6 @@ struct ResultKey {
   std::size_t orientation = 0;  ///< index into Result::orientations
 };
 
-/// One view of the body: a time, how the body stands, where light comes from, and who looks from where. An instant of
-/// the motion is one (a single one, the identity, without motion), a direction of a grid is another.
-struct Orientation {
-  double time_s = 0.0;
-  Quaternion body_to_space{1.0, 0.0, 0.0, 0.0};
-  Vec3 source{0.0, 0.0, 1.0};      ///< toward the source, body frame
-  std::vector<Vec3> observers;     ///< body frame, one per Scene::observers
-  std::vector<double> ranges_m{};  ///< to each observer at that time; 0: not known
-  double light = 1.0;              ///< irradiance of the source, as a share of the one that the scene states
-  double source_range_m = 0.0;     ///< to a laser's station; 0: not known
-  /// Of the body over the horizon of each observer's site; NaN, or no entry, where there is none.
-  std::vector<double> elevations_rad{};
-};
-
 /// A place on the Earth at an instant of a pass, as light from the body arrives there (from a station: midway between
 /// fire and return).
 struct SiteSight {

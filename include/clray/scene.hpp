@@ -207,6 +207,20 @@ struct Motion {
   std::vector<Attitude> attitudes;
 };
 
+/// One view of the body: a time, how the body stands, where light comes from, and who looks from where. An instant of
+/// the motion is one (a single one, the identity, without motion), a direction of a grid is another.
+struct Orientation {
+  double time_s = 0.0;
+  Quaternion body_to_space{1.0, 0.0, 0.0, 0.0};
+  Vec3 source{0.0, 0.0, 1.0};      ///< toward the source, body frame
+  std::vector<Vec3> observers{};   ///< body frame, one per Scene::observers
+  std::vector<double> ranges_m{};  ///< to each observer at that time; 0: not known
+  double light = 1.0;              ///< irradiance of the source, as a share of the one that the scene states
+  double source_range_m = 0.0;     ///< to a laser's station; 0: not known
+  /// Of the body over the horizon of each observer's site; NaN, or no entry, where there is none.
+  std::vector<double> elevations_rad{};
+};
+
 /// How the body stands during a pass: its axes lie along those of the law, turned by the offset.
 struct PassAttitude {
   enum class Law { inertial, nadir, nadir_yaw_steering, sun_pointing, spin };
@@ -294,6 +308,10 @@ struct Scene {
   TraceOptions trace;
   std::vector<std::string> warnings;
   std::optional<Pass> pass;  ///< instead of a motion
+  /// Views given one by one, instead of a motion or a pass. Their `observers` may be empty: then an observer at the
+  /// source looks along the view's `source`, and another along its own direction. Without `ranges_m` the ranges are
+  /// those of observers and station.
+  std::vector<Orientation> views{};
 };
 
 /// What the command line may say about a scene; it overrides the file.

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// See preparation.hpp.
+#include "pipeline/preparation.hpp"
+
+#include <algorithm>
+
+namespace clray {
+namespace {
+
+bool same(const Transform& a, const Transform& b) {
+  return a.translate == b.translate && a.axis == b.axis && a.angle_rad == b.angle_rad && a.scale == b.scale;
+}
+
+// What a hinge follows, and its angle, are of a view.
+bool same(const std::optional<Hinge>& a, const std::optional<Hinge>& b) {
+  if (!a || !b) return !a && !b;
+  return a->axis == b->axis && a->point == b->point;
+}
+
+bool same(const Component& a, const Component& b) {
+  return a.shape == b.shape && a.parameters == b.parameters && a.mesh == b.mesh && a.materials == b.materials &&
+         same(a.transform, b.transform) && same(a.hinge, b.hinge);
+}
+
+bool same(const std::vector<Component>& a, const std::vector<Component>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const Component& x, const Component& y) { return same(x, y); });
+}
+
+}  // namespace
+
+const Geometry& Preparation::body(const Scene& scene, bool trees) {
+  std::optional<Kept>& kept = trees ? with_trees_ : without_;
+  std::vector<std::uint32_t> ranks = material_ranks(scene);
+  if (!kept || kept->material_ranks != ranks || !same(kept->components, scene.components)) {
+    kept.reset();
+    drop_passes();
+    kept = Kept{scene.components, std::move(ranks), build_geometry(scene, trees)};
+  }
+  if (on_devices_ != &kept->geometry) drop_passes();
+  on_devices_ = &kept->geometry;
+  return kept->geometry;
+}
+
+KeptPass* Preparation::pass(std::size_t number) {
+  if (passes_.size() <= number) passes_.resize(number + 1);
+  return &passes_[number];
+}
+
+}  // namespace clray

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// What of a scene stays from one trace to the next: the body, which no view, light or surface changes, and the passes
+// on the devices with what they hold of it. Whatever differs is made anew, so that a trace gives the same bits with a
+// preparation of any scene as without one.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "body/geometry.hpp"
+#include "clray/device.hpp"
+#include "clray/scene.hpp"
+#include "pipeline/pass_runner.hpp"
+
+namespace clray {
+
+class Preparation {
+ public:
+  /// For tracing on that device, and no other.
+  explicit Preparation(Device& device) : device_(device) {}
+
+  Device& device() const { return device_; }
+
+  /// The body of a scene, with trees or without: the kept one, or, where it is another, a new one.
+  const Geometry& body(const Scene& scene, bool trees);
+
+  /// What was kept of the scene's pass of this number.
+  KeptPass* pass(std::size_t number);
+
+  /// Forgets the passes, as after an error that leaves their sums unknown.
+  void drop_passes() { passes_.clear(); }
+
+ private:
+  /// All that a geometry is made of.
+  struct Kept {
+    std::vector<Component> components;
+    std::vector<std::uint32_t> material_ranks;
+    Geometry geometry;
+  };
+
+  Device& device_;
+  std::optional<Kept> with_trees_, without_;
+  const Geometry* on_devices_ = nullptr;  // that the passes hold
+  std::vector<KeptPass> passes_;
+};
+
+}  // namespace clray
