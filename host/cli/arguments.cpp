@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <limits>
 #include <type_traits>
 
@@ -22,6 +23,9 @@ constexpr const char* kDescription =
     "by a laser station of 532 nm; directions X,Y,Z point away from the body, in its own frame.";
 
 constexpr const char* kFooter =
+    "\nOther uses:\n"
+    "  clray merge DIR DIR ... --out DIR    the result of a run from the sums of all its shares\n"
+    "  clray verify DIR                     computes a tenth of a run's sums again and compares their bits\n"
     "\nExamples:\n"
     "  clray satellite.obj                                   the pulse that a laser pulse becomes, to 1 %\n"
     "  clray --observer 1,0,1 --target-error 0.1% box.obj    seen from the side, to 0.1 %\n"
@@ -33,7 +37,7 @@ constexpr const char* kFooter =
 /// The options' texts, before they are parsed as values.
 struct Texts {
   std::optional<std::string> rays, target, time, source, observer, bins, bounces, seed, unit, group, slice, sampler,
-      format, method;
+      format, method, checkpoint, share;
 };
 
 /// "; did you mean --x?" for an option that comes near, else nothing.
@@ -96,8 +100,13 @@ void text_option(CLI::App& app, const std::string& name, Text& value, const std:
 }
 
 void add_options(CLI::App& app, Arguments& a, Texts& t) {
-  const std::string scene = "Scene", run = "Run", output = "Output", ask = "Questions", test = "For tests of identity";
-  app.add_option("SCENE", a.scene, "mesh (.obj .ply .stl .off) or scene file (.toml)")->type_name("");
+  const std::string scene = "Scene", run = "Run", output = "Output", save = "Saved sums", ask = "Questions",
+                    test = "For tests of identity";
+  if (a.verb.empty()) {
+    app.add_option("SCENE", a.scene, "mesh (.obj .ply .stl .off) or scene file (.toml)")->type_name("");
+  } else {
+    app.add_option("RESULT", a.operands, "folders of results, or their files of sums")->type_name("");
+  }
   app.add_option("--detector", a.scene_options.detectors,
                  wrapped("what is measured, may be repeated: " + joined(table_rows("detector")) +
                          "; replaces the scene file's list [delay for a mesh]"))
@@ -144,6 +153,17 @@ void add_options(CLI::App& app, Arguments& a, Texts& t) {
       ->group(output);
   app.add_flag("--explain", a.explain, wrapped("what was compiled in and what was left out for this scene, and why"))
       ->group(output);
+
+  text_option(
+      app, "--checkpoint", t.checkpoint, "T",
+      "time between two files of sums, DIR.sums, from which --resume goes on; 0: none while the run goes on [30]",
+      save);
+  text_option(app, "--resume", a.resume, "DIR",
+              "go on with the run whose sums are in DIR.sums; other options may be given, such as a sharper target",
+              save);
+  app.add_flag("--keep-sums", a.keep_sums, wrapped("keep DIR.sums when the run is complete"))->group(save);
+  text_option(app, "--shard", t.share, "I/N", "trace share I of N of a run, into DIR.sums; clray merge adds the shares",
+              save);
 
   app.add_option("--list", a.list, wrapped("print the devices, or a table of what scenes may say, and end: " + lists()))
       ->type_name("NAME")
@@ -201,6 +221,8 @@ void parse_values(Arguments& a, const Texts& t) {
   if (t.bounces) a.max_bounces = static_cast<int>(count_for_key("max_bounces", *t.bounces, "--max-bounces"));
   if (t.group) a.work_group = static_cast<int>(count_up_to(1024, *t.group, "--work-group"));
   if (t.slice) a.slice_points = count_up_to(std::numeric_limits<std::uint64_t>::max(), *t.slice, "--slice-points");
+  if (t.checkpoint) a.checkpoint_s = parse_duration(*t.checkpoint, "--checkpoint");
+  if (t.share) a.share = parse_share(*t.share, "--shard");
   if (t.seed) a.seed = count_for_key("seed", *t.seed, "--seed");
   if (t.unit) a.scene_options.length_unit_m = parse_length_unit(*t.unit, "--length-unit");
   if (t.source) a.scene_options.source = parse_direction(*t.source, "--source");
@@ -248,7 +270,11 @@ void check_whole(const Arguments& a) {
                 "there is no list '" + a.list + "'; expected one of " + lists() + text::did_you_mean(a.list, tables),
                 "--list");
   }
-  if (a.scene.empty()) {
+  if (!a.verb.empty() && a.operands.empty())
+    throw Error(ErrorCode::usage, "nothing given to " + a.verb + ": name the folders of results");
+  if (a.verb == "verify" && a.operands.size() > 1) throw Error(ErrorCode::usage, "one result at a time", "verify");
+  if (a.verb == "merge" && a.out.empty()) throw Error(ErrorCode::usage, "expected --out DIR for the result", "merge");
+  if (a.scene.empty() && a.resume.empty() && a.verb.empty()) {
     throw Error(ErrorCode::usage,
                 "no scene given: name a mesh (.obj .ply .stl .off) or a scene file (.toml), or see clray --help");
   }
@@ -256,31 +282,46 @@ void check_whole(const Arguments& a) {
 
 }  // namespace
 
-Arguments parse_arguments(int argc, char** argv) {
-  Arguments arguments;
-  for (int i = 0; i < argc; ++i) {
-    arguments.command += (i ? " " : "") + std::string(argv[i]);
-  }
+void parse_words(std::vector<std::string> words, Arguments* arguments) {
   CLI::App app(kDescription, "clray");
   app.footer(kFooter);
   app.get_formatter()->column_width(34);
   Texts texts;
-  add_options(app, arguments, texts);
+  add_options(app, *arguments, texts);
+  std::reverse(words.begin(), words.end());  // as CLI11 takes them
   try {
-    app.parse(argc, argv);
+    app.parse(words);
   } catch (const CLI::CallForHelp&) {
     std::fputs(app.help().c_str(), stdout);
-    arguments.finished = true;
-    return arguments;
+    arguments->finished = true;
+    return;
   } catch (const CLI::CallForVersion&) {
     std::puts("clray " CLRAY_VERSION);
-    arguments.finished = true;
-    return arguments;
+    arguments->finished = true;
+    return;
   } catch (const CLI::ParseError& error) {
     complain(app, error);
   }
-  parse_values(arguments, texts);
+  parse_values(*arguments, texts);
+}
+
+Arguments parse_arguments(int argc, char** argv) {
+  Arguments arguments;
+  for (int i = 0; i < argc; ++i) arguments.command += (i ? " " : "") + std::string(argv[i]);
+  std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
+  if (!words.empty() && (words[0] == "merge" || words[0] == "verify")) {
+    arguments.verb = words[0];
+    words.erase(words.begin());
+  }
+  parse_words(words, &arguments);
+  if (arguments.finished) return arguments;
   check_whole(arguments);
+  if (!arguments.resume.empty() || !arguments.verb.empty()) {
+    go_on(words, &arguments);
+  } else {
+    arguments.note = {std::filesystem::current_path().string()};
+    arguments.note.insert(arguments.note.end(), words.begin(), words.end());
+  }
   return arguments;
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "clray/saved.hpp"
 #include "clray/scene.hpp"
 
 namespace clray::cli {
@@ -25,11 +26,30 @@ struct Arguments {
   std::optional<Method> method;
   bool no_specialise = false, force_bistatic = false;
 
+  // Saved sums (clray/saved.hpp).
+  std::string verb;                   ///< "merge", "verify" or nothing
+  std::vector<std::string> operands;  ///< what is merged or verified
+  std::string resume;                 ///< the result to go on with
+  std::vector<std::string> from;      ///< files of sums to go on from
+  std::vector<std::string> note;      ///< this command, for whoever goes on: the folder and the words
+  double checkpoint_s = 30.0;
+  bool keep_sums = false;
+  Share share;
+
   bool finished = false;  ///< help or version were printed: nothing is left to do
 };
 
 /// Throws Error(usage). Prints help and version itself.
 Arguments parse_arguments(int argc, char** argv);
+
+/// Parses one command's words over what is known.
+void parse_words(std::vector<std::string> words, Arguments* arguments);
+
+/// What --resume, merge and verify go on with: the arguments of the saved run, and these (of `words`) over them.
+void go_on(const std::vector<std::string>& words, Arguments* arguments);
+
+/// The file of sums of a result's folder, or that file itself.
+std::string sums_file(const std::string& folder);
 
 /// The command line's word over the scene file's.
 void apply(const Arguments& arguments, Scene& scene);
@@ -42,6 +62,8 @@ double parse_duration(const std::string& text, const std::string& option);
 double parse_percent(const std::string& text, const std::string& option);
 /// "X,Y,Z", as a unit vector.
 Vec3 parse_direction(const std::string& text, const std::string& option);
+/// "i/n", 1 to n.
+Share parse_share(const std::string& text, const std::string& option);
 /// One of length_units(), or a number of metres.
 double parse_length_unit(const std::string& text, const std::string& option);
 

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The program clray: arguments -> public API -> files. Maps every error to an exit status. After a signal (signals.hpp)
 // a run ends with what is finished.
+#include <unistd.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <memory>
 #include <new>
+#include <random>
 #include <set>
 
 #include "arguments.hpp"
@@ -14,6 +17,7 @@
 #include "clray/keys.hpp"
 #include "clray/pass.hpp"
 #include "clray/result.hpp"
+#include "clray/saved.hpp"
 #include "clray/session.hpp"
 #include "clray/sizes.hpp"
 #include "environment.hpp"
@@ -96,9 +100,11 @@ class Run {
     check_output(asked);
     if (const std::string fault = size_fault(scene_, asked); !fault.empty()) throw Error(ErrorCode::output, fault);
     if (!arguments_.reference.empty()) reference_ = load_reference(arguments_.reference);
+    prepare_saving(asked);
     Device device(arguments_.device);
     Result result = traced(device);
     warnings_.show(result.warnings);
+    if (saving_.share.of > 1) return say_share(result);
     if (result.partial && !finished_something_) {
       if (signals_.taken() != 0) return nothing_saved();
       throw Error(ErrorCode::usage, "too short: not even the first doubling was finished; nothing is saved",
@@ -107,30 +113,63 @@ class Run {
     result.seconds.load = load_s;
     result.seconds.total = seconds_since(start);
     write(result, device, result_folder(result, asked));
+    if (!result.partial && !saving_.keep && is_saved(saving_.file)) std::remove(saving_.file.c_str());
     if (signals_.taken() == 0) return 0;
     std::fputs(result.partial ? "clray: interrupted: the result holds what was finished and is marked partial\n"
                               : "clray: interrupted when all was traced: the result is complete\n",
                stderr);
+    say_how_to_go_on();
     return 128 + signals_.taken();
   }
 
  private:
+  /// Where sums are saved, and what stands there.
+  void prepare_saving(const std::string& folder) {
+    saving_.keep = arguments_.keep_sums || arguments_.share.of > 1;
+    saving_.every_s = arguments_.checkpoint_s;
+    saving_.note = arguments_.note;
+    saving_.from = arguments_.from;
+    saving_.share = arguments_.share;
+    const std::string file = cli::sums_file(folder);
+    if (saving_.keep || saving_.every_s > 0.0) saving_.file = file;
+    if (saving_.file.empty() || ::access(file.c_str(), F_OK) != 0) return;
+    if (!is_saved(file))
+      throw Error(ErrorCode::output, "will not replace " + file + ": it holds no sums of clray; choose another --out");
+    if (saving_.from.empty())
+      warnings_.show({file + " holds the sums of an earlier run and will be replaced; --resume goes on with them"});
+  }
+
+  void say_how_to_go_on() const {
+    if (is_saved(saving_.file))
+      std::fprintf(stderr, "clray: its sums are in %s: clray --resume goes on\n", text::shown(saving_.file).c_str());
+  }
+
+  int say_share(const Result& result) const {
+    if (!result.partial) {
+      print("share " + std::to_string(saving_.share.number) + " of " + std::to_string(saving_.share.of) +
+            ": its sums are in " + saving_.file + "\n");
+      return 0;
+    }
+    std::fputs("clray: interrupted: the share is not finished\n", stderr);
+    say_how_to_go_on();
+    return 128 + signals_.taken();
+  }
+
   Result traced(Device& device) {
     cli::ProgressBar bar(!arguments_.quiet);
     TraceHooks hooks;
     hooks.progress = [&](const Progress& progress) {
-      if (progress.keeps) {
-        finished_something_ = true;
-        signals_.keep_what_is_finished();
-      }
+      finished_something_ = finished_something_ || progress.keeps;
+      if (progress.keeps || saving_.share.of > 1) signals_.keep_what_is_finished();
       bar.show(progress);
     };
     hooks.stop = &signals_.stop();
-    return trace(scene_, device, hooks);
+    return trace(scene_, device, hooks, saving_);
   }
 
   int nothing_saved() const {
-    std::fputs("clray: interrupted: nothing was finished, so nothing is saved\n", stderr);
+    std::fputs("clray: interrupted: nothing was finished, so there is no result\n", stderr);
+    say_how_to_go_on();
     return 128 + signals_.taken();
   }
 
@@ -162,8 +201,28 @@ class Run {
   cli::Signals& signals_;
   Warnings& warnings_;
   Reference reference_;
+  Saving saving_;
   bool finished_something_ = false;
 };
+
+/// Computes a tenth of a run's sums again; 0 where they are the same.
+int verify_sums(const cli::Arguments& arguments, const Scene& scene, cli::Signals& signals) {
+  constexpr double kShare = 0.1;
+  Device device(arguments.device);
+  TraceHooks hooks;
+  hooks.stop = &signals.stop();
+  const std::string& file = arguments.from.front();
+  const Verified found = verify(scene, device, file, kShare, std::random_device()(), hooks);
+  const std::string compared = std::to_string(found.recomputed) + " of " + std::to_string(found.ranges) +
+                               " ranges were computed again on " + cli::device_line(device.info()) + ", " +
+                               std::to_string(found.numbers) + " sums";
+  if (found.different.empty()) {
+    print("the same: " + compared + " have the same bits\n");
+    return 0;
+  }
+  for (const std::string& one : found.different) print("  " + one + "\n");
+  throw Error(ErrorCode::bug, "not the same: " + compared + ", of which some differ", file);
+}
 
 int run(int argc, char** argv, cli::Signals& signals) {
   const auto start = Clock::now();
@@ -188,6 +247,7 @@ int run(int argc, char** argv, cli::Signals& signals) {
     print(kernel_source(scene, device));
     return 0;
   }
+  if (arguments.verb == "verify") return verify_sums(arguments, scene, signals);
   return Run(arguments, scene, signals, warnings).trace_and_write(start, seconds_since(start));
 }
 

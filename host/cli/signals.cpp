@@ -53,7 +53,7 @@ void Signals::take_signals() {
 void Signals::end(int signal) {
   ending_ = true;
   text::remove_temporaries_for_good();
-  const char* const saved = patient_ ? "the result was not written" : "nothing was finished, so nothing is saved";
+  const char* const saved = patient_ ? "the result was not written" : "nothing was finished, so there is no result";
   std::fprintf(stderr, "%sclray: interrupted: %s\n", ::isatty(STDERR_FILENO) == 1 ? "\r\033[K" : "", saved);
   ::_exit(128 + signal);
 }

@@ -78,6 +78,16 @@ double parse_duration(const std::string& text, const std::string& option) {
   return value;
 }
 
+Share parse_share(const std::string& text, const std::string& option) {
+  const std::string expected = "a share i/n such as 3/8, with i of 1 to n and n of at most 1000000";
+  const std::size_t slash = text.find('/');
+  if (slash == std::string::npos) reject(option, text, expected);
+  const std::uint64_t number = parse_count(text.substr(0, slash), option),
+                      of = parse_count(text.substr(slash + 1), option);
+  if (number < 1 || number > of || of > 1000000) reject(option, text, expected);
+  return {static_cast<std::uint32_t>(number), static_cast<std::uint32_t>(of)};
+}
+
 double parse_percent(const std::string& text, const std::string& option) {
   const std::string expected = "a percentage such as 1 or 0.1%";
   const bool sign = !text.empty() && text.back() == '%';

@@ -134,16 +134,6 @@ fs::path resolve(const std::string& target) {
   return path;
 }
 
-void sync(const fs::path& path) {
-  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor < 0) fail_output("open", path, errno);
-  // Some file systems cannot sync folders. The user's data are safe all the same.
-  const bool failed = ::fsync(descriptor) != 0 && errno != EINVAL && errno != EROFS;
-  const int code = errno;
-  ::close(descriptor);
-  if (failed) fail_output("write", path, code);
-}
-
 /// Puts `temporary` at `target`. What stood there is then at `temporary`. Returns an errno or 0.
 int exchange(const fs::path& temporary, const fs::path& target) {
   const auto lock = hold_temporaries();
@@ -231,13 +221,13 @@ std::string OutputFolder::keep() noexcept {
 }
 
 void OutputFolder::commit() {
-  for (const auto& entry : fs::directory_iterator(temporary_)) sync(entry.path());
-  sync(temporary_);
+  for (const auto& entry : fs::directory_iterator(temporary_)) sync_to_disk(entry.path());
+  sync_to_disk(temporary_);
   check_replaceable(target_);  // it may have changed while we traced
   if (const int code = exchange(temporary_, target_)) fail_output("put the result at", target_, code);
   done_ = true;
   noted_.reset();  // what stands there now is the older result
-  sync(target_.parent_path());
+  sync_to_disk(target_.parent_path());
 }
 
 }  // namespace clray::io

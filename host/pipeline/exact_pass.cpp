@@ -39,18 +39,21 @@ class Solver {
         sums_(*sums),
         all_faces_(wants_all_faces(plan)) {}
 
-  bool run() {
-    const std::size_t views = plan_.beams.views.size();
+  /// Solves views `first` to `end` - 1; `solved_before` is called behind each group but the last.
+  bool run(std::size_t first, std::size_t end, const std::function<void(std::size_t)>& solved_before) {
+    end_ = end;
     const std::size_t together = std::max<std::size_t>(1, kGroupFaces / (1 + geometry_.primitives.size()));
-    std::vector<std::future<Group>> next = prepare(0, together);
-    for (std::size_t v = 0; v < views; v += together) {
+    std::vector<std::future<Group>> next;
+    if (first < end) next = prepare(first, together);
+    for (std::size_t v = first; v < end; v += together) {
       std::vector<std::future<Group>> groups = std::move(next);
-      if (v + together < views) next = prepare(v + together, together);
+      if (v + together < end) next = prepare(v + together, together);
       Group lit = groups.front().get();
       if (!solve_lit(&lit)) return false;
       for (std::size_t s = 1; s < sights_.size(); ++s) {
         if (!solve_seen(sights_[s], lit, groups[s].get())) return false;
       }
+      if (v + together < end) solved_before(v + together);
     }
     return true;
   }
@@ -58,7 +61,7 @@ class Solver {
  private:
   /// The faces of some views from every sight, found in threads while devices are at work.
   std::vector<std::future<Group>> prepare(std::size_t first_view, std::size_t count) const {
-    const std::size_t end_view = std::min(first_view + count, plan_.beams.views.size());
+    const std::size_t end_view = std::min(first_view + count, end_);
     std::vector<std::future<Group>> groups;
     for (const Sight& sight : sights_) {
       groups.push_back(std::async(std::launch::async, [this, &sight, first_view, end_view] {
@@ -213,7 +216,7 @@ class Solver {
   const std::function<bool(double)>& keep_going_;
   Sums& sums_;
   const bool all_faces_;
-  std::size_t next_device_ = 0;
+  std::size_t next_device_ = 0, end_ = 0;
 };
 
 }  // namespace
@@ -238,14 +241,27 @@ ExactPass::ExactPass(Device& device, const PassPlan& plan, const Geometry& geome
 
 ExactPass::~ExactPass() = default;
 
-bool ExactPass::run(Sums* sums, const std::function<bool(double)>& keep_going) {
-  *sums = Sums(plan_.layout);
-  sums->area_rounding.assign(plan_.beams.views.size(), 0.0);
-  if (!Solver(plan_, geometry_, parts_->sights, parts_->devices, keep_going, sums).run()) return false;
+bool ExactPass::run(Sums* sums, OpenStep* step, const std::function<bool(double)>& keep_going,
+                    const Checkpoint& checkpoint) {
+  *sums = step->done > 0 ? step->more : Sums(plan_.layout);
+  sums->area_rounding.resize(plan_.beams.views.size());
+  Solver solver(plan_, geometry_, parts_->sights, parts_->devices, keep_going, sums);
+  const bool solved = solver.run(step->from + step->done, step->points, [&](std::size_t end) {
+    if (!checkpoint.due || !checkpoint.due()) return;
+    step->more = *sums;
+    step->done = end - step->from;
+    add_bins(&step->more);
+    checkpoint.save();
+  });
+  if (solved) add_bins(sums);
+  return solved;
+}
+
+/// What devices have found of histograms since the pass began.
+void ExactPass::add_bins(Sums* sums) const {
   std::vector<i64> bins(parts_->bins);
   for (auto& device : parts_->devices) device->read_bins(&bins);
   take_bins(plan_, parts_->sights, bins, sums);
-  return true;
 }
 
 }  // namespace clray

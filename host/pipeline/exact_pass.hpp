@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "clray/device.hpp"
+#include "pipeline/pass_runner.hpp"
 #include "pipeline/plan.hpp"
 
 namespace clray {
@@ -18,14 +19,17 @@ class ExactPass {
   ExactPass(Device& device, const PassPlan& plan, const Geometry& geometry);
   ~ExactPass();
 
-  /// Solves every view and gives *sums what the detectors make of them. `keep_going` is asked with the share done; when
-  /// it says no, returns false and *sums is of no use.
-  bool run(Sums* sums, const std::function<bool(double)>& keep_going);
+  /// Solves views step->from to step->points - 1, going on where step->done says, and gives *sums what the detectors
+  /// make of them. `keep_going` is asked with the share done. When it says no, returns false: *sums is of no use, and
+  /// *step has what was last saved.
+  bool run(Sums* sums, OpenStep* step, const std::function<bool(double)>& keep_going, const Checkpoint& checkpoint);
 
   /// Seconds spent building programs.
   double compile_seconds() const { return compile_seconds_; }
 
  private:
+  void add_bins(Sums* sums) const;
+
   const PassPlan& plan_;
   const Geometry& geometry_;
   struct Parts;

@@ -54,7 +54,7 @@ void take_bins(const PassPlan& plan, const std::vector<Sight>& sights, const std
       for (std::uint64_t row = 0; row < shape.views * shape.lanes; ++row) {
         for (const std::size_t c : sight.connections) {
           for (std::uint64_t k = 0; k < block.width; ++k)
-            sums->values.set(block.offset + (row * shape.connections + c) * block.width + k,
+            sums->values.add(block.offset + (row * shape.connections + c) * block.width + k,
                              bins[b.offset + row * block.width + k]);
         }
       }

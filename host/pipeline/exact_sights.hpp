@@ -24,7 +24,7 @@ std::vector<Sight> sights_of(const PassPlan& plan);
 /// Lays the histograms of every sight out, one after the other; returns how many numbers they have.
 std::uint64_t lay_out_bins(const PassPlan& plan, std::vector<Sight>* sights);
 
-/// Gives each histogram's block its rows, of a view, lane and connection.
+/// Adds to each histogram's block its rows, of a view, lane and connection.
 void take_bins(const PassPlan& plan, const std::vector<Sight>& sights, const std::vector<i64>& bins, Sums* sums);
 
 /// What the program of an exact pass is built with.

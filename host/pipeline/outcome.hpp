@@ -25,6 +25,7 @@ struct PassOutcome {
   bool target_asked = false, target_reached = false;
   Ending ending;                 ///< of the view that missed the target by most, else of the one with the largest error
   std::uint64_t rays_total = 0;  ///< over all views and phases
+  double seconds = 0.0;          ///< of tracing
   std::vector<ErrorPoint> errors;
 };
 

@@ -45,7 +45,9 @@ PassBuffers::PassBuffers(const PassPlan& plan, const Geometry& geometry) {
   blocks = all_of(own_blocks_);
   settings = all_of(own_settings_);
   strata = all_of(plan.beams.strata);
-  const bool wide_too = plan.program.options.defines.at("CLRAY_WIDE") == "1";
+  const auto& defines = plan.program.options.defines;
+  const auto wide_define = defines.find("CLRAY_WIDE");  // a program without rays has none
+  const bool wide_too = wide_define != defines.end() && wide_define->second == "1";
   sums.count = plan.layout.values;
   wide.count = wide_too ? plan.layout.values : 1;
   counts.count = plan.layout.counts;

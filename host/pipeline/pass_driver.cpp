@@ -13,6 +13,7 @@
 #include "pipeline/clock.hpp"
 #include "pipeline/course.hpp"
 #include "pipeline/estimate.hpp"
+#include "pipeline/shares.hpp"
 
 namespace clray {
 namespace {
@@ -84,40 +85,118 @@ struct Step {
 
 class PassDriver {
  public:
-  PassDriver(const Geometry& geometry, const PassPlan& plan, PointRunner& runner, const TraceOptions& options,
-             const TraceHooks& hooks, double time_left_s)
+  PassDriver(const Geometry& geometry, const PassPlan& plan, const TraceOptions& options, const TraceHooks& hooks,
+             RunSaver& saver, double time_left_s)
       : geometry_(geometry),
         plan_(plan),
-        runner_(runner),
         hooks_(hooks),
+        saver_(saver),
+        checkpoint_(saver.checkpoint()),
+        saved_(saver.pass(plan)),
         courses_(plan.beams.views.size(), Course(rules_of(plan, options))),
-        confirmed_epochs_(courses_.size(), 0),
-        start_(now()),
-        time_left_s_(time_left_s),
-        searched_(plan.layout) {}
+        time_left_s_(time_left_s) {
+    if (saved_.found.points.empty()) saved_.found = Sums(plan.layout);
+    saved_.epochs.resize(courses_.size());
+    go_on();
+  }
 
-  PassOutcome run() {
+  PassOutcome run(const std::function<PointRunner&()>& runner) {
     for (std::vector<Step> steps = next_steps(); !steps.empty(); steps = next_steps()) {
+      start(runner);
       for (const Step& step : steps) {
-        if (!take(step)) return answer();
+        if (take(step)) continue;
+        saver_.save();
+        return answer();
       }
     }
+    saved_.complete = true;
     return answer();
   }
 
+  /// Takes one of several shares of points or, where they are found anew, of views.
+  PassOutcome run_share(const std::function<PointRunner&()>& runner) {
+    const CourseRules& rules = courses_.front().rules();
+    if (rules.target > 0.0 || rules.fixed_points == kMostPoints || time_left_s_ > 0.0)
+      throw Error(ErrorCode::usage,
+                  "a share needs a run whose end is known: --rays, and neither --target-error nor --time-limit");
+    OpenStep step = share_of(plan_, saver_.share(), rules.fixed_points);
+    saved_.first.assign(courses_.size(), 0);
+    for (const std::uint32_t v : step.views) saved_.found.points[v] = saved_.first[v] = step.from;
+    if (!saved_.step.is_same(step)) saved_.step = std::move(step);
+    if (!saved_.complete && !saved_.step.views.empty()) {
+      start(runner);
+      Step shown;
+      shown.points = {"share", 0, saved_.step.points, false};
+      shown.from = saved_.step.from;
+      shown.views = saved_.step.views;
+      const auto ask = [&](double part) { return keep_going(shown, part, now() - start_); };
+      out_.partial = !runner_->run(&saved_.found, &saved_.step, ask, checkpoint_);
+    }
+    if (!out_.partial) saved_.step = OpenStep();
+    saved_.complete = !out_.partial;
+    if (out_.partial) saver_.save();
+    out_.seconds = now() - start_;
+    return std::move(out_);
+  }
+
  private:
+  void start(const std::function<PointRunner&()>& runner) {
+    if (runner_ != nullptr) return;
+    runner_ = &runner();
+    start_ = now();
+  }
+
+  /// Takes the courses to where the saved sums are.
+  void go_on() {
+    std::map<std::tuple<std::uint32_t, std::uint32_t, std::uint64_t>, double> known;
+    for (const StepNote& note : saved_.notes) known[{note.view, note.epoch, note.points}] = note.error;
+    for (std::uint32_t v = 0; v < courses_.size(); ++v) {
+      const std::uint64_t found = saved_.found.points[v];
+      finished_a_step_ = finished_a_step_ || found > 0;
+      for (auto next = courses_[v].next(); next; next = courses_[v].next()) {
+        const auto note = known.find({v, next->epoch, next->points});
+        if (note != known.end()) {
+          courses_[v].took(note->second);
+        } else if (!next->confirms && next->points == found) {
+          courses_[v].took(error_of(saved_.found, v).relative_standard_error);
+        } else if (!next->confirms && next->points < found && courses_[v].rules().target == 0.0) {
+          courses_[v].took(kNan);  // of steps on the way, where no error decides anything
+        } else {
+          break;
+        }
+      }
+      check_further(v);
+    }
+  }
+
+  /// Points that a saved run has beyond what is asked cannot be taken away again.
+  void check_further(std::uint32_t v) const {
+    const CourseState& state = courses_[v].state();
+    const auto next = courses_[v].next();
+    const bool confirm = next ? next->confirms : state.answer_confirmed;
+    const bool same_epoch = !saved_.confirmed.points.empty() && saved_.epochs[v] == state.epoch;
+    const std::uint64_t has = !confirm ? saved_.found.points[v] : same_epoch ? saved_.confirmed.points[v] : 0;
+    const std::uint64_t wanted = next ? next->points : confirm ? state.confirm_size : state.searched;
+    const bool anew = next && plan_.request.tiles();
+    if (anew || (next ? has <= wanted : has == wanted)) return;
+    throw Error(ErrorCode::usage,
+                fmt::format("the saved run has gone further ({} points of a replicate) than this one asks for ({})",
+                            has, wanted));
+  }
+
   /// What the courses ask for next, in an order that depends on nothing but them.
   std::vector<Step> next_steps() {
     std::map<std::tuple<bool, std::uint32_t, std::uint64_t, std::uint64_t>, Step> steps;
+    Sums& confirmed = saved_.confirmed;
     for (std::uint32_t v = 0; v < courses_.size(); ++v) {
       const std::optional<CourseStep> next = courses_[v].next();
       if (!next) continue;
-      if (next->confirms && confirmed_.points.empty()) confirmed_ = Sums(plan_.layout);  // pictures never need it
-      if (next->confirms && next->epoch != confirmed_epochs_[v]) {                       // the last confirmation missed
-        confirmed_.set_view(plan_.layout, v, nullptr);
-        confirmed_epochs_[v] = next->epoch;
+      if (next->confirms && confirmed.points.empty()) confirmed = Sums(plan_.layout);  // pictures never need it
+      if (next->confirms && next->epoch != saved_.epochs[v]) {                         // the last confirmation missed
+        confirmed.set_view(plan_.layout, v, nullptr);
+        saved_.epochs[v] = next->epoch;
       }
-      const std::uint64_t from = (next->confirms ? confirmed_ : searched_).points[v];
+      const std::uint64_t from = (next->confirms ? confirmed : saved_.found).points[v];
       Step& step = steps[{next->confirms, next->epoch, from, next->points}];
       step.points = *next;
       step.from = from;
@@ -130,22 +209,37 @@ class PassDriver {
 
   /// Traces a step; false where time or an interrupt ended the pass.
   bool take(const Step& step) {
-    Sums& sums = step.points.confirms ? confirmed_ : searched_;
-    double& seconds = step.points.confirms ? confirm_seconds_ : search_seconds_;
-    if (step.points.confirms && step.from == 0 && step.views.size() == courses_.size()) seconds = 0.0;
+    const bool confirms = step.points.confirms;
+    Sums& sums = confirms ? saved_.confirmed : saved_.found;
+    double& seconds = confirms ? saved_.confirm_s : saved_.search_s;
+    if (confirms && step.from == 0 && step.views.size() == courses_.size()) seconds = 0.0;
+    OpenStep open{step.points.epoch, step.from, step.points.points, step.views, 0, {}};
+    if (!saved_.step.is_same(open)) saved_.step = std::move(open);
     const double begin = now();
     const auto ask = [&](double share) { return keep_going(step, share, seconds + now() - begin); };
-    if (!runner_.run(&sums, step.views, step.points.points, step.points.epoch, ask)) {
+    if (!runner_->run(&sums, &saved_.step, ask, checkpoint_)) {
       for (Course& course : courses_) {
         if (course.next()) course.cut(stopped_by_);
       }
       return false;
     }
+    saved_.step = OpenStep();
     seconds += now() - begin;
     note(step, sums, seconds);
     finished_a_step_ = true;
     if (hooks_.progress) hooks_.progress(progress(step, 1.0, seconds));
+    if (checkpoint_.due && checkpoint_.due()) checkpoint_.save();
     return true;
+  }
+
+  ErrorPoint error_of(const Sums& sums, std::uint32_t v) const {
+    ErrorPoint point;
+    if (plan_.request.paints()) {
+      point.relative_standard_error = picture_error(plan_, geometry_, sums, v);
+    } else {
+      largest_error(targets_of(plan_, geometry_, sums, v), static_cast<double>(sums.points[v]), &point);
+    }
+    return point;
   }
 
   /// Tells the courses the errors of their views, and notes the largest.
@@ -153,13 +247,9 @@ class PassDriver {
     ErrorPoint worst;
     worst.relative_standard_error = kNan;
     for (const std::uint32_t v : step.views) {
-      ErrorPoint point;
-      if (plan_.request.paints()) {
-        point.relative_standard_error = picture_error(plan_, geometry_, sums, v);
-      } else {
-        largest_error(targets_of(plan_, geometry_, sums, v), static_cast<double>(sums.points[v]), &point);
-      }
+      const ErrorPoint point = error_of(sums, v);
       courses_[v].took(point.relative_standard_error);
+      saved_.notes.push_back({v, step.points.epoch, step.points.points, point.relative_standard_error});
       if (v == 0) {
         worst.first_total = point.first_total;
         worst.first_standard_error = point.first_standard_error;
@@ -170,7 +260,7 @@ class PassDriver {
     worst.phase = step.points.phase;
     worst.rays = static_cast<std::uint64_t>(static_cast<double>(step.points.points) * rays_per_point());
     worst.seconds = seconds;
-    out_.errors.push_back(worst);
+    saved_.errors.push_back(worst);
   }
 
   bool keep_going(const Step& step, double share, double seconds) {
@@ -225,13 +315,15 @@ class PassDriver {
   }
 
   PassOutcome answer() {
-    out_.sums = std::move(searched_);
+    out_.seconds = runner_ != nullptr ? now() - start_ : 0.0;
+    out_.errors = saved_.errors;
+    out_.sums = saver_.keeps(plan_) ? saved_.found : std::move(saved_.found);
     out_.target_asked = courses_.front().rules().target_asked;
     out_.target_reached = out_.target_asked;
     for (std::size_t v = 0; v < courses_.size(); ++v) {
       const CourseState& state = courses_[v].state();
       const CourseRules& rules = courses_[v].rules();
-      if (state.answer_confirmed) out_.sums.set_view(plan_.layout, v, &confirmed_);
+      if (state.answer_confirmed) out_.sums.set_view(plan_.layout, v, &saved_.confirmed);
       // A run that was given a time and nothing else is complete when its time is over.
       const bool only_time = rules.fixed_points == kMostPoints && std::string(state.ended_by) == "time limit";
       out_.partial = out_.partial || (state.partial && !only_time);
@@ -252,60 +344,24 @@ class PassDriver {
 
   const Geometry& geometry_;
   const PassPlan& plan_;
-  PointRunner& runner_;
   const TraceHooks& hooks_;
+  RunSaver& saver_;
+  const Checkpoint checkpoint_;
+  SavedPass& saved_;
   std::vector<Course> courses_;  // of each view
-  std::vector<std::uint32_t> confirmed_epochs_;
-  double start_, time_left_s_;
-  double search_seconds_ = 0.0, confirm_seconds_ = 0.0;
+  PointRunner* runner_ = nullptr;
+  double start_ = 0.0, time_left_s_;
   const char* stopped_by_ = "";
   bool finished_a_step_ = false;
-  Sums searched_, confirmed_;
   PassOutcome out_;
 };
 
 }  // namespace
 
-PassOutcome drive_pass(const Geometry& geometry, const PassPlan& plan, PointRunner& runner, const TraceOptions& options,
-                       const TraceHooks& hooks, double time_left_s) {
-  return PassDriver(geometry, plan, runner, options, hooks, time_left_s).run();
-}
-
-PassOutcome solve_pass(ExactPass& pass, const TraceOptions& options, const TraceHooks& hooks, double time_left_s) {
-  const double start = now();
-  PassOutcome out;
-  const char* stopped_by = "";
-  const auto tell = [&](double share, bool keeps) {
-    if (!hooks.progress) return;
-    Progress p;
-    p.phase = "exact";
-    p.fraction = share;
-    p.relative_error = 0.0;
-    p.seconds_left = share > 0.0 ? (now() - start) * (1.0 / share - 1.0) : kNan;
-    p.keeps = keeps;
-    hooks.progress(p);
-  };
-  const auto keep_going = [&](double share) {
-    if (hooks.stop != nullptr && hooks.stop->load()) stopped_by = "interrupt";
-    if (time_left_s > 0.0 && now() - start > time_left_s) stopped_by = "time limit";
-    tell(share, false);
-    return *stopped_by == '\0';
-  };
-  out.target_asked = options.target_error_percent > 0.0;
-  if (!pass.run(&out.sums, keep_going)) {
-    out.sums = Sums();
-    out.partial = true;
-    out.ending.by = stopped_by;
-    return out;
-  }
-  tell(1.0, true);
-  out.target_reached = out.target_asked;
-  out.ending = {"exact", 0.0, 0};
-  ErrorPoint point;
-  point.phase = "exact";
-  point.seconds = now() - start;
-  out.errors.push_back(point);
-  return out;
+PassOutcome drive_pass(const Geometry& geometry, const PassPlan& plan, const std::function<PointRunner&()>& runner,
+                       const TraceOptions& options, const TraceHooks& hooks, RunSaver& saver, double time_left_s) {
+  PassDriver driver(geometry, plan, options, hooks, saver, time_left_s);
+  return saver.has_one_of_several() ? driver.run_share(runner) : driver.run(runner);
 }
 
 }  // namespace clray

@@ -48,36 +48,50 @@ PassRunner::PassRunner(Device& device, const PassPlan& plan, const Geometry& geo
 
 PassRunner::~PassRunner() = default;
 
-bool PassRunner::run(Sums* sums, const std::vector<std::uint32_t>& views, std::uint64_t points, std::uint32_t epoch,
-                     const std::function<bool(double)>& keep_going) {
-  for (auto& device : devices_) device->set_work(epoch, views);
-  const std::uint64_t begin = sums->points[views.front()];
+bool PassRunner::run(Sums* sums, OpenStep* step, const std::function<bool(double)>& keep_going,
+                     const Checkpoint& checkpoint) {
+  for (auto& device : devices_) device->set_work(step->epoch, step->views);
   const std::uint64_t bounces = static_cast<std::uint64_t>(plan_.traits.max_bounces) + 1;
   std::uint64_t block = kMostContributions / (2 * bounces);  // a bounce enters a book at most twice
   while ((block & (block - 1)) != 0) block &= block - 1;     // a power of two keeps neighbouring points together
   if (options_.slice_points != 0) block = std::min(block, options_.slice_points);
-  std::uint64_t at = begin, undrained = 0;
-  std::optional<Sums> before;  // copied only if sums must be drained before the end, since those of pictures are large
-  while (at < points) {
-    const std::uint64_t count = std::min(points - at, block);
-    const double done = static_cast<double>(at - begin), all = static_cast<double>(points - begin);
+  std::uint64_t undrained = 0;
+  for (std::uint64_t at = step->from + step->done; at < step->points;) {
+    const std::uint64_t most = checkpoint.every_s > 0.0 ? std::min(block, block_points_) : block;
+    const std::uint64_t count = std::min(step->points - at, most);
+    const double done = static_cast<double>(at - step->from), all = static_cast<double>(step->points - step->from);
     const auto ask = [&](double share) { return keep_going((done + share * static_cast<double>(count)) / all); };
     if ((undrained + count) * 2 * bounces > kMostContributions) {
-      if (!before) before = *sums;
-      drain(sums);
+      drain_into(step, at - step->from);
       undrained = 0;
     }
-    if (!run_block(views.size(), static_cast<std::uint32_t>(at), static_cast<std::uint32_t>(count), ask)) {
-      if (before) *sums = std::move(*before);
+    const double start = now();
+    if (!run_block(step->views.size(), static_cast<std::uint32_t>(at), static_cast<std::uint32_t>(count), ask)) {
       for (auto& device : devices_) device->clear(plan_);
       return false;
     }
+    // A block is what is lost where a run is killed, so it takes a fraction of what lies between two files of sums.
+    if (count == most && now() - start < checkpoint.every_s / 8) block_points_ = std::min(2 * block_points_, block);
+    if (now() - start > checkpoint.every_s / 2) block_points_ = std::max<std::uint64_t>(block_points_ / 2, 1);
     at += count;
     undrained += count;
+    if (at < step->points && checkpoint.due && checkpoint.due()) {
+      drain_into(step, at - step->from);
+      undrained = 0;
+      checkpoint.save();
+    }
   }
   drain(sums);
-  for (const std::uint32_t v : views) sums->points[v] = points;
+  if (step->done > 0) sums->add(plan_.layout, step->more);
+  for (const std::uint32_t v : step->views) sums->points[v] = step->points;
   return true;
+}
+
+/// Sums of an unfinished step stay apart from those of whole steps.
+void PassRunner::drain_into(OpenStep* step, std::uint64_t done) {
+  if (step->more.points.empty()) step->more = Sums(plan_.layout);
+  drain(&step->more);
+  step->done = done;
 }
 
 bool PassRunner::run_block(std::size_t views, std::uint32_t first_point, std::uint32_t points,

@@ -9,21 +9,31 @@
 #include <vector>
 
 #include "clray/device.hpp"
+#include "pipeline/course.hpp"
 #include "pipeline/plan.hpp"
+#include "pipeline/saved_sums.hpp"
 
 namespace clray {
 
 class DevicePass;
+
+/// When a step stops for a moment, so that what it has found can be saved.
+struct Checkpoint {
+  double every_s = 0.0;        ///< 0: never
+  std::function<bool()> due;   ///< asked where step->more could hold all that is done
+  std::function<void()> save;  ///< called when it does
+};
 
 /// Finds the sums of points.
 class PointRunner {
  public:
   virtual ~PointRunner() = default;
 
-  /// Brings *sums to `points` of epoch `epoch` for `views` (ascending), which have as many so far, all of them.
-  /// `keep_going` is asked now and then with the share done; when it says no, returns false and *sums is as it was.
-  virtual bool run(Sums* sums, const std::vector<std::uint32_t>& views, std::uint64_t points, std::uint32_t epoch,
-                   const std::function<bool(double)>& keep_going) = 0;
+  /// Brings *sums from step->from to step->points points of the step's epoch, for its views (ascending), going on where
+  /// step->done says. `keep_going` is asked now and then with the share done. When it says no, returns false: *sums is
+  /// as it was, and *step has what was done, or the part of it that was last saved.
+  virtual bool run(Sums* sums, OpenStep* step, const std::function<bool(double)>& keep_going,
+                   const Checkpoint& checkpoint) = 0;
 
   /// Seconds spent building programs.
   double compile_seconds() const { return compile_seconds_; }
@@ -44,17 +54,19 @@ class PassRunner : public PointRunner {
   ~PassRunner() override;
 
   /// Adds the points that are missing.
-  bool run(Sums* sums, const std::vector<std::uint32_t>& views, std::uint64_t points, std::uint32_t epoch,
-           const std::function<bool(double)>& keep_going) override;
+  bool run(Sums* sums, OpenStep* step, const std::function<bool(double)>& keep_going,
+           const Checkpoint& checkpoint) override;
 
  private:
   void drain(Sums* sums);
+  void drain_into(OpenStep* step, std::uint64_t done);
   bool run_block(std::size_t views, std::uint32_t first_point, std::uint32_t points,
                  const std::function<bool(double)>& keep_going);
 
   const PassPlan& plan_;
   const TraceOptions& options_;
   KeptPass devices_;
+  std::uint64_t block_points_ = kFirstPoints;  // of the next block, where sums are saved
 };
 
 }  // namespace clray

@@ -47,4 +47,15 @@ KeptPass* Preparation::pass(std::size_t number) {
   return &passes_[number];
 }
 
+Planned plan_scene(Preparation& kept, const Scene& scene) {
+  const Geometry* geometry = &kept.body(scene, !may_need_no_rays(scene));
+  std::vector<PassRequest> requests = pass_requests(scene, *geometry);
+  const bool rays =
+      std::any_of(requests.begin(), requests.end(), [](const PassRequest& r) { return !r.without_rays(); });
+  if (rays && !geometry->trees) geometry = &kept.body(scene, true);
+  std::vector<PassPlan> plans = plan_passes(scene, *geometry, std::move(requests));
+  fit_to(kept.device(), &plans);
+  return {*geometry, std::move(plans)};
+}
+
 }  // namespace clray

@@ -45,4 +45,13 @@ class Preparation {
   std::vector<KeptPass> passes_;
 };
 
+/// What is known of a scene before the first ray.
+struct Planned {
+  const Geometry& geometry;
+  std::vector<PassPlan> plans;
+};
+
+/// The body, with trees only where a pass has rays, and the plans of its passes.
+Planned plan_scene(Preparation& kept, const Scene& scene);
+
 }  // namespace clray

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 
 #include "pipeline/estimate.hpp"
 #include "text/hash.hpp"
@@ -50,6 +51,28 @@ Sums::Sums(const SumLayout& layout)
 
 bool Sums::empty() const {
   return std::all_of(points.begin(), points.end(), [](std::uint64_t n) { return n == 0; });
+}
+
+void Sums::add(const SumLayout& layout, const Sums& more) {
+  for (std::uint64_t k = 0; k < layout.values; ++k) values.add(k, more.values[k]);
+  for (const SumBlock& block : layout.blocks) {
+    if (!block.counts()) continue;
+    for (std::uint64_t k = block.offset; k < block.offset + block.size(); ++k) {
+      if (block.scale != SumScale::greatest) {
+        counts.add(k, more.counts[k]);
+      } else if (more.counts[k] > counts[k]) {
+        counts.set(k, more.counts[k]);
+      }
+    }
+  }
+  for (std::size_t v = 0; v < events.size(); ++v)
+    std::transform(events[v].begin(), events[v].end(), more.events[v].begin(), events[v].begin(), std::plus<>());
+  const auto add_bounds = [](const std::vector<double>& from, std::vector<double>* to) {
+    to->resize(std::max(to->size(), from.size()));
+    std::transform(from.begin(), from.end(), to->begin(), to->begin(), std::plus<>());
+  };
+  add_bounds(more.rounding, &rounding);
+  add_bounds(more.area_rounding, &area_rounding);
 }
 
 void Sums::set_view(const SumLayout& layout, std::size_t view, const Sums* other) {

@@ -64,6 +64,8 @@ struct Sums {
 
   /// No view has any points.
   bool empty() const;
+  /// Adds what other points of the same pass brought. The points of the views stay as they are.
+  void add(const SumLayout& layout, const Sums& more);
   /// Gives a view the sums that it has in `other`, or zeros.
   void set_view(const SumLayout& layout, std::size_t view, const Sums* other);
 };

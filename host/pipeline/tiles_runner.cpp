@@ -282,25 +282,28 @@ TilesRunner::TilesRunner(Device& device, const PassPlan& plan, const Geometry& g
 
 TilesRunner::~TilesRunner() = default;
 
-bool TilesRunner::run(Sums* sums, const std::vector<std::uint32_t>& views, std::uint64_t points, std::uint32_t epoch,
-                      const std::function<bool(double)>& keep_going) {
+bool TilesRunner::run(Sums* sums, OpenStep* step, const std::function<bool(double)>& keep_going,
+                      const Checkpoint& checkpoint) {
   const PassPlan& plan = parts_->plan;
-  Sums fresh(plan.layout);
-  for (std::size_t k = 0; k < views.size(); ++k) {
-    const std::uint32_t v = views[k];
-    if (!keep_going(static_cast<double>(k) / static_cast<double>(views.size()))) return false;
+  const std::uint64_t points = step->points;
+  if (step->more.points.empty()) step->more = Sums(plan.layout);
+  while (step->done < step->views.size()) {
+    const std::uint32_t v = step->views[step->done];
+    if (!keep_going(static_cast<double>(step->done) / static_cast<double>(step->views.size()))) return false;
     std::unique_ptr<CutView>& kept = parts_->kept[v];
     if (kept == nullptr) kept = parts_->new_view(v);
     parts_->device_of(v).begin_view(kept->group.on_device);
     const Stage& stage = parts_->stage(v, kept.get(), points);
-    parts_->solve_covered(stage, v, points, &kept->group, &fresh);
-    SampleSums found = parts_->device_of(v).sample(stage.mixed, parts_->sampling(v, epoch, points, true));
-    parts_->add_sampled(stage, found, v, points, kept->group, &fresh);
-    if (epoch == 0) kept->values[points] = std::move(found.values);
-    fresh.points[v] = points;
+    parts_->solve_covered(stage, v, points, &kept->group, &step->more);
+    SampleSums found = parts_->device_of(v).sample(stage.mixed, parts_->sampling(v, step->epoch, points, true));
+    parts_->add_sampled(stage, found, v, points, kept->group, &step->more);
+    if (step->epoch == 0) kept->values[points] = std::move(found.values);
+    step->more.points[v] = points;
     if (!parts_->keeps_views()) kept.reset();
+    ++step->done;
+    if (step->done < step->views.size() && checkpoint.due && checkpoint.due()) checkpoint.save();
   }
-  for (const std::uint32_t v : views) sums->set_view(plan.layout, v, &fresh);
+  for (const std::uint32_t v : step->views) sums->set_view(plan.layout, v, &step->more);
   return true;
 }
 

@@ -15,10 +15,10 @@ class TilesRunner : public PointRunner {
   TilesRunner(Device& device, const PassPlan& plan, const Geometry& geometry);
   ~TilesRunner() override;
 
-  /// Gives *sums the sums of `views` on `points` tiles each. Nothing is added to what was there: more points are other
-  /// tiles.
-  bool run(Sums* sums, const std::vector<std::uint32_t>& views, std::uint64_t points, std::uint32_t epoch,
-           const std::function<bool(double)>& keep_going) override;
+  /// Gives *sums the sums of the step's views on so many tiles each. Nothing is added to what was there: more points
+  /// are other tiles.
+  bool run(Sums* sums, OpenStep* step, const std::function<bool(double)>& keep_going,
+           const Checkpoint& checkpoint) override;
 
  private:
   struct Parts;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <utility>
 
 #include "clray/error.hpp"
@@ -20,6 +21,7 @@
 #include "pipeline/pass_runner.hpp"
 #include "pipeline/plan.hpp"
 #include "pipeline/preparation.hpp"
+#include "pipeline/run_saver.hpp"
 #include "pipeline/tiles_runner.hpp"
 #include "pipeline/warnings.hpp"
 #include "text/hash.hpp"
@@ -43,29 +45,11 @@ void add_unique(const std::vector<std::string>& from, std::vector<std::string>* 
   }
 }
 
-/// What is known of a scene before the first ray.
-struct Planned {
-  const Geometry& geometry;
-  std::vector<PassPlan> plans;
-};
-
-/// The body, with trees only where a pass has rays, and the plans of its passes.
-Planned plan(Preparation& kept, const Scene& scene) {
-  const Geometry* geometry = &kept.body(scene, !may_need_no_rays(scene));
-  std::vector<PassRequest> requests = pass_requests(scene, *geometry);
-  const bool rays =
-      std::any_of(requests.begin(), requests.end(), [](const PassRequest& r) { return !r.without_rays(); });
-  if (rays && !geometry->trees) geometry = &kept.body(scene, true);
-  std::vector<PassPlan> plans = plan_passes(scene, *geometry, std::move(requests));
-  fit_to(kept.device(), &plans);
-  return {*geometry, std::move(plans)};
-}
-
 /// Traces the passes of a scene one by one and makes their result.
 class Tracer {
  public:
-  Tracer(Preparation& kept, const Scene& scene, const TraceHooks& hooks)
-      : kept_(kept), device_(kept.device()), scene_(scene), hooks_(hooks) {}
+  Tracer(Preparation& kept, const Scene& scene, const TraceHooks& hooks, const Saving& saving)
+      : kept_(kept), device_(kept.device()), scene_(scene), hooks_(hooks), saver_(saving) {}
 
   Result run() {
     result_.instants = pass_instants(scene_);
@@ -74,16 +58,20 @@ class Tracer {
     result_.device = device_.info();
     result_.seed = scene_.trace.seed;
     result_.replicates = scene_.trace.replicates;
-    const Planned planned = plan(kept_, scene_);
+    const Planned planned = plan_scene(kept_, scene_);
     const Geometry& geometry = planned.geometry;
     result_.mesh = geometry.report;
     result_.extent_m = geometry.extent;
     result_.seconds.bvh = now() - start;
     result_.digest = kFnvStart;
+    saver_.begin(planned.plans, geometry);
     for (std::size_t k = 0; k < planned.plans.size(); ++k) {
       const double left = scene_.trace.time_limit_s > 0.0 ? std::max(1e-6, scene_.trace.time_limit_s - spent_) : 0.0;
-      take(planned.plans[k], geometry, outcome_of(planned.plans[k], geometry, kept_.pass(k), left));
+      // After an interrupt no other program is built.
+      const bool go = k == 0 || !stopped();
+      take(planned.plans[k], geometry, go ? outcome_of(planned.plans[k], geometry, kept_.pass(k), left) : cut());
     }
+    if (!result_.partial) saver_.end();
     end(geometry, start);
     return std::move(result_);
   }
@@ -93,42 +81,63 @@ class Tracer {
   PassOutcome outcome_of(const PassPlan& plan, const Geometry& geometry, KeptPass* kept, double time_left_s) {
     if (plan.request.exact()) return solved(plan, geometry, time_left_s);
     if (plan.request.tiles()) {
-      TilesRunner runner(device_, plan, geometry);
-      return driven(plan, geometry, runner, time_left_s);
+      const auto make = [&] { return std::make_unique<TilesRunner>(device_, plan, geometry); };
+      return driven(plan, geometry, make, time_left_s);
     }
     const double before = spent_;
     if (plan.first) {
       PassOutcome first = solved(plan.first->plan, geometry, time_left_s);
-      if (first.sums.empty()) return first;
+      if (first.partial) return first;
       plan.first->sums = std::move(first.sums);
     }
     const double solving = spent_ - before;
     if (time_left_s > 0.0) time_left_s = std::max(1e-6, time_left_s - solving);
-    PassRunner runner(device_, plan, geometry, scene_.trace, kept);
-    PassOutcome outcome = driven(plan, geometry, runner, time_left_s);
+    const auto make = [&] { return std::make_unique<PassRunner>(device_, plan, geometry, scene_.trace, kept); };
+    PassOutcome outcome = driven(plan, geometry, make, time_left_s);
     for (ErrorPoint& point : outcome.errors) point.seconds += solving;
     return outcome;
   }
 
   PassOutcome solved(const PassPlan& plan, const Geometry& geometry, double time_left_s) {
-    ExactPass pass(device_, plan, geometry);
-    result_.seconds.compile += pass.compile_seconds();
-    const double begin = now();
-    PassOutcome outcome = solve_pass(pass, scene_.trace, hooks_, time_left_s);
-    spent_ += now() - begin;
+    std::unique_ptr<ExactPass> pass;
+    const auto make = [&]() -> ExactPass& {
+      pass = std::make_unique<ExactPass>(device_, plan, geometry);
+      result_.seconds.compile += pass->compile_seconds();
+      return *pass;
+    };
+    PassOutcome outcome = solve_pass(plan, make, scene_.trace, hooks_, saver_, time_left_s);
+    spent_ += outcome.seconds;
     return outcome;
   }
 
-  PassOutcome driven(const PassPlan& plan, const Geometry& geometry, PointRunner& runner, double time_left_s) {
-    result_.seconds.compile += runner.compile_seconds();
-    const double begin = now();
-    PassOutcome outcome = drive_pass(geometry, plan, runner, scene_.trace, hooks_, time_left_s);
-    spent_ += now() - begin;
+  template <class Make>
+  PassOutcome driven(const PassPlan& plan, const Geometry& geometry, const Make& make, double time_left_s) {
+    std::unique_ptr<PointRunner> runner;
+    const auto made = [&]() -> PointRunner& {
+      runner = make();
+      result_.seconds.compile += runner->compile_seconds();
+      return *runner;
+    };
+    PassOutcome outcome = drive_pass(geometry, plan, made, scene_.trace, hooks_, saver_, time_left_s);
+    spent_ += outcome.seconds;
     return outcome;
   }
+
+  PassOutcome cut() {
+    if (!result_.partial) saver_.save();  // else the pass that was cut has done so
+    PassOutcome outcome;
+    outcome.partial = true;
+    return outcome;
+  }
+
+  bool stopped() const { return hooks_.stop != nullptr && hooks_.stop->load(); }
 
   /// Adds what a pass found to the result.
   void take(const PassPlan& plan, const Geometry& geometry, const PassOutcome& outcome) {
+    if (saver_.has_one_of_several()) {
+      result_.partial = result_.partial || outcome.partial;
+      return;
+    }
     if (outcome.sums.empty()) {
       result_.partial = true;
       result_.warnings.push_back("stopped before the first result");
@@ -163,7 +172,7 @@ class Tracer {
     result_.target_reached = result_.target_asked && target_reached_ && !result_.partial;
     if (result_.target_asked) result_.target_percent = scene_.trace.target_error_percent;
     result_.reached_percent = 100.0 * ending_.half_width;
-    result_.stopped_by = ending_.by;
+    result_.stopped_by = result_.partial && stopped() ? "interrupt" : ending_.by;
     result_.seconds.trace = spent_;
     result_.seconds.total = now() - start;
     check_diagnostics(result_, scene_.trace.allow_failures);
@@ -188,12 +197,13 @@ class Tracer {
   double spent_ = 0.0;  // s of tracing
   Ending ending_;
   LitRecords lit_;
+  RunSaver saver_;
 };
 
-Result trace_with(Preparation& kept, const Scene& scene, const TraceHooks& hooks) {
+Result trace_with(Preparation& kept, const Scene& scene, const TraceHooks& hooks, const Saving& saving = {}) {
   check_scene(scene);
   try {
-    return Tracer(kept, scene, hooks).run();
+    return Tracer(kept, scene, hooks, saving).run();
   } catch (...) {
     kept.drop_passes();  // their sums may be anything
     throw;
@@ -204,7 +214,7 @@ Result trace_with(Preparation& kept, const Scene& scene, const TraceHooks& hooks
 void prepare(Preparation& kept, const Scene& scene) {
   check_scene(scene);
   const DeviceUse use(kept.device());
-  const Planned planned = plan(kept, scene);
+  const Planned planned = plan_scene(kept, scene);
   for (std::size_t k = 0; k < planned.plans.size(); ++k) {
     const PassPlan& plan = planned.plans[k];
     if (plan.request.exact()) ExactPass(kept.device(), plan, planned.geometry);
@@ -257,11 +267,16 @@ Result trace(const Scene& scene, Device& device, const TraceHooks& hooks) {
   return trace_with(kept, scene, hooks);
 }
 
+Result trace(const Scene& scene, Device& device, const TraceHooks& hooks, const Saving& saving) {
+  Preparation kept(device);
+  return trace_with(kept, scene, hooks, saving);
+}
+
 std::string kernel_source(const Scene& scene, Device& device) {
   check_scene(scene);
   const DeviceUse use(device);
   Preparation kept(device);
-  const Planned planned = plan(kept, scene);
+  const Planned planned = plan_scene(kept, scene);
   const Specialised& program = planned.plans.front().program;
   return program_source(device.impl().devices.front(), program.entry, program.options);
 }

@@ -2,12 +2,14 @@
 // Checked writing; see output_file.hpp.
 #include "text/output_file.hpp"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
 
 #include "clray/error.hpp"
+#include "text/temporaries.hpp"
 #include "text/text.hpp"
 
 namespace clray::text {
@@ -34,6 +36,11 @@ void OutputFile::put(std::string_view bytes) {
   if (std::fwrite(bytes.data(), 1, bytes.size(), file_) != bytes.size()) fail_output("write", path_, errno);
 }
 
+void OutputFile::sync() {
+  errno = 0;
+  if (std::fflush(file_) != 0 || ::fsync(::fileno(file_)) != 0) fail_output("write", path_, errno);
+}
+
 void OutputFile::close() {
   errno = 0;
   const bool failed = std::fclose(file_) != 0;
@@ -48,6 +55,32 @@ void write_output_file(const std::string& path, std::string_view bytes) {
   OutputFile file(path);
   file.put(bytes);
   file.close();
+}
+
+void replace_output_file(const std::string& path, std::string_view bytes) {
+  const std::string beside = path + ".new";
+  const Temporary noted(beside);
+  OutputFile file(beside);
+  file.put(bytes);
+  file.sync();
+  file.close();
+  if (::rename(beside.c_str(), path.c_str()) != 0) {
+    const int code = errno;
+    discard_output_file(beside);
+    fail_output("write", path, code);
+  }
+  const std::size_t slash = path.rfind('/');
+  sync_to_disk(slash == std::string::npos ? "." : path.substr(0, slash + 1));
+}
+
+void sync_to_disk(const std::string& path) {
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) fail_output("open", path, errno);
+  // Some file systems cannot sync folders. The user's data are safe all the same.
+  const bool failed = ::fsync(descriptor) != 0 && errno != EINVAL && errno != EROFS;
+  const int code = errno;
+  ::close(descriptor);
+  if (failed) fail_output("write", path, code);
 }
 
 void discard_output_file(const std::string& path) noexcept {

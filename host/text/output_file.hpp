@@ -21,6 +21,8 @@ class OutputFile {
   OutputFile& operator=(const OutputFile&) = delete;
 
   void put(std::string_view bytes);
+  /// Forces to disk what was put.
+  void sync();
   void close();
 
  private:
@@ -30,6 +32,13 @@ class OutputFile {
 
 /// A file of these bytes. Throws Error(output).
 void write_output_file(const std::string& path, std::string_view bytes);
+
+/// Forces a file, or the entries of a folder, to disk. Throws Error(output).
+void sync_to_disk(const std::string& path);
+
+/// Puts a file of these bytes at `path`, whole: it is written beside it as `path`.new and forced to disk before it
+/// takes the place. Throws Error(output); what stood there is then still there.
+void replace_output_file(const std::string& path, std::string_view bytes);
 
 /// Removes a file that a library left unfinished.
 void discard_output_file(const std::string& path) noexcept;

@@ -32,8 +32,13 @@ struct Pass {
   explicit Pass(Scene s) : scene(std::move(s)) {}
   Sums run(std::uint64_t points) const { return run(points, Sums(plan.layout)); }
   Sums run(std::uint64_t points, Sums sums) const {
-    clray::PassRunner runner(device(), plan, geometry, scene.trace);
-    runner.run(&sums, {0}, points, 0, [](double) { return true; });
+    clray::KeptPass kept;
+    clray::PassRunner runner(device(), plan, geometry, scene.trace, &kept);
+    clray::OpenStep step;
+    step.from = sums.points.front();
+    step.points = points;
+    step.views = {0};
+    runner.run(&sums, &step, [](double) { return true; }, {});
     return sums;
   }
   const clray::SumBlock& block(const char* detector, std::uint32_t sum) const {
