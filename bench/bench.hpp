@@ -27,6 +27,7 @@ int stability(const Options& options);   ///< stiff and extreme cases (docs/stab
 int specialise(const Options& options);  ///< generic against specialised programs
 int sweep(const Options& options);       ///< cost of orientations
 int end(const Options& options);         ///< time to given errors, against a tracer on Embree
+int method(const Options& options);      ///< whether auto takes the quickest method
 int shots(const Options& options);       ///< first-photon shots per second
 
 /// Whether `name` is asked for.

@@ -43,11 +43,14 @@ Curve measure_and_print(const ErrorCase& c, const Sampler& sampler, int most, co
 
 DeviceCurves measure_all(const std::vector<ErrorCase>& cases, const Options& options, clray::Device& device,
                          std::string* runs) {
-  DeviceCurves all{device_line(device.info()), {}, {}};
+  DeviceCurves all{device_line(device.info()), {}, {}, {}};
   for (const ErrorCase& c : cases) {
     if (!wanted(options, c.name)) continue;
-    if (const std::optional<Solved> solved = solve(c, device)) all.solved.push_back(*solved);
     const int most = affordable(c, options, device);
+    if (const std::optional<Solved> solved = solve(c, device)) {
+      all.solved.push_back(*solved);
+      all.tiles.push_back(measure_and_print(c, kTiles, std::min(most, kMostTiles), options, device, runs));
+    }
     for (const Sampler& sampler : kSamplers)
       all.curves.push_back(measure_and_print(c, sampler, most, options, device, runs));
   }
@@ -83,6 +86,8 @@ std::string section(const DeviceCurves& d, const std::string& picture, const Opt
       "\n## {}\n{}\n![error against time]({})\n\n### Totals at the largest ray count\n\n{}\n"
       "### The exact method\n\nCases that it takes ([exact.md](exact.md)); in the picture a cross, at its time and its "
       "rounding bound.\n\n{}\n"
+      "### Tiles\n\nThe same cases with points in tiles. A run finds each doubling anew, so its time is that of all "
+      "of them.\n\n{}\n"
       "### Rays to 0.1 %\n\nRays at which the rms true error falls below 0.1 % for good, interpolated between the "
       "doublings measured.\n~: beyond the last, by the slope.\n\n{}\n"
       "### Claims\n\nRms true error over rms claimed, by rays: 1 is fair, above 1 claims too little.\n\n{}\n"
@@ -91,7 +96,8 @@ std::string section(const DeviceCurves& d, const std::string& picture, const Opt
       "### Where the time goes\n\nSeconds at the largest ray count, medians; programs come from the cache after the "
       "first run.\n\n{}{}",
       d.device, stopped_early(d.curves, options), picture, totals_table(d.curves), solved_table(d.solved),
-      rays_table(d.curves), fairness_table(d.curves), bins_table(d.curves), split_table(d.curves),
+      totals_table(d.tiles), rays_table(d.curves), fairness_table(d.curves), bins_table(d.curves),
+      split_table(d.curves),
       replicates.empty()
           ? ""
           : "\n### The cost of a claim\n\nThe same 2^16 stratified rays as 4, 16 and 32 replicates.\n\n" + replicates);

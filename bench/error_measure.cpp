@@ -9,7 +9,6 @@
 #include <stdexcept>
 
 #include "clray/error.hpp"
-#include "clray/trace.hpp"
 
 namespace clray_bench {
 
@@ -23,6 +22,7 @@ clray::Result run(const ErrorCase& which, const Sampler& sampler, int log2_rays,
   clray::Scene scene = which.scene;
   scene.trace.sobol = sampler.sobol;
   scene.trace.stratify = sampler.stratify;
+  scene.trace.method = sampler.method;
   clray_test::rays(scene, log2_rays, static_cast<std::uint64_t>(seed));
   return clray::trace(scene, device);
 }

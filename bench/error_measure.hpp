@@ -11,6 +11,7 @@
 
 #include "bench.hpp"
 #include "clray/device.hpp"
+#include "clray/trace.hpp"
 #include "error_cases.hpp"
 
 namespace clray_bench {
@@ -18,9 +19,13 @@ namespace clray_bench {
 struct Sampler {
   const char* name;
   bool sobol, stratify;
+  clray::Method method = clray::Method::points;
 };
 constexpr Sampler kSamplers[] = {{"random", false, false}, {"sobol", true, false}, {"stratified", true, true}};
 constexpr int kSamplerCount = 3;
+/// Points in tiles (docs/exact.md), of cases with a pulse that tiles can find. More are dearer than to solve them.
+constexpr Sampler kTiles = {"tiles", true, false, clray::Method::tiles};
+constexpr int kMostTiles = 20;  ///< log2 of their points
 
 /// One ray count: a value per seed.
 struct Point {

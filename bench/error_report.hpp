@@ -14,6 +14,7 @@ struct DeviceCurves {
   std::string device;
   std::vector<Curve> curves;
   std::vector<Solved> solved;  ///< the cases that the exact method takes
+  std::vector<Curve> tiles;    ///< of the same cases
 };
 
 /// A row per case, sampler and device with the quantiles of every ray count.

@@ -65,7 +65,9 @@ std::string error_csv(const std::vector<DeviceCurves>& all) {
       "rounding bound, rays 0)\n"
       "device,case,sampler,rays,seeds,true_median,true_90,true_rms,claimed_median,claimed_90,claimed_rms,trace_s\n";
   for (const DeviceCurves& d : all) {
-    for (const Curve& c : d.curves) {
+    std::vector<Curve> curves = d.curves;
+    curves.insert(curves.end(), d.tiles.begin(), d.tiles.end());
+    for (const Curve& c : curves) {
       for (const Point& p : c.points)
         csv += fmt::format("\"{}\",{},{},{},{},{:.4e},{:.4e},{:.4e},{:.4e},{:.4e},{:.4e},{:.6f}\n", d.device,
                            c.which->name, c.sampler.name, 1ull << p.log2_rays, p.truth.size(), median(p.truth),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// clray-bench error|end|stability|specialise|sweep|shots: measures clray through its public interface. The device is
-// the one that CLRAY_TEST_DEVICE names, else the CPU.
+// clray-bench error|end|method|stability|specialise|sweep|shots: measures clray through its public interface. The
+// device is the one that CLRAY_TEST_DEVICE names, else the CPU.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
@@ -33,6 +33,8 @@ int main(int argc, char** argv) {
   add("stability", "the stiff and extreme cases", clray_bench::stability);
   add("specialise", "generic against specialised programs", clray_bench::specialise);
   add("sweep", "cost of orientations", clray_bench::sweep);
+  CLI::App* method = add("method", "whether auto takes the quickest way to a target", clray_bench::method);
+  method->add_option("--mesh", options.meshes, "a mesh as a further body; repeatable")->check(CLI::ExistingFile);
   CLI::App* end =
       add("end", "time to given errors of the total and of bins, against a tracer on Embree", clray_bench::end);
   end->add_option("--mesh", options.meshes, "a mesh as a further body; repeatable")->check(CLI::ExistingFile);

@@ -17,6 +17,8 @@ std::uint64_t power_of_two_above(std::uint64_t value) {
   return p;
 }
 
+constexpr double kCareful = 1.1;  // a leap that falls short costs more than one that goes a little far
+
 }  // namespace
 
 Course::Course(const CourseRules& rules) : rules_(rules) {
@@ -48,6 +50,16 @@ bool Course::passes() const {
   return rules_.t95 * state_.error <= rules_.target;
 }
 
+/// How many times as many points a search takes next.
+std::uint64_t Course::growth() const {
+  if (rules_.anew_power == 0.0 || !(state_.error > 0.0)) return 2;
+  const double ratio = std::pow(rules_.t95 * state_.error / rules_.target, 1.0 / rules_.anew_power);
+  std::uint64_t leap =
+      power_of_two_above(static_cast<std::uint64_t>(std::ceil(std::clamp(kCareful * ratio, 2.0, 16.0))));
+  while (leap > 2 && leap * state_.points > rules_.most_points) leap /= 2;
+  return leap;
+}
+
 void Course::end(const char* by, bool reached) {
   state_.phase = CourseState::over;
   state_.ended_by = by;
@@ -75,9 +87,9 @@ void Course::took(double relative_error) {
       s.phase = CourseState::confirm;
       s.confirm_size = std::max(s.points, rules_.least_points);
       ++s.epoch;
-      s.points = std::min(rules_.first_points, s.confirm_size);
+      s.points = rules_.anew_power > 0.0 ? s.confirm_size : std::min(rules_.first_points, s.confirm_size);
     } else {
-      s.points *= 2;
+      s.points *= growth();
       if (s.points > rules_.most_points) end("max_rays", false);
     }
   } else if (s.points < s.confirm_size) {

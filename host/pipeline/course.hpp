@@ -26,7 +26,10 @@ struct CourseRules {
   double target = 0.0;                        ///< 95 % half-width over the value; 0: none
   bool target_asked = false;                  ///< by the user
   double t95 = 2.0;                           ///< half-width over standard error
-  const char* fixed_end = "rays";             ///< what ends fixed points: see Result::stopped_by
+  /// Not 0: each number of points is found anew, and the error falls with this power of it. A search then leaps to
+  /// where the target is expected, and a confirmation takes one step.
+  double anew_power = 0.0;
+  const char* fixed_end = "rays";  ///< what ends fixed points: see Result::stopped_by
 };
 
 /// Points to trace: a phase's points are numbered from 0, on the scrambles of `epoch`.
@@ -68,6 +71,7 @@ class Course {
 
  private:
   bool passes() const;
+  std::uint64_t growth() const;
   void end(const char* by, bool reached);
 
   CourseRules rules_;

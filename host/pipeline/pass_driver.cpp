@@ -21,6 +21,7 @@ namespace {
 constexpr std::uint64_t kZeroRays = 1u << 20;      // after which a zero total counts as zero
 constexpr std::uint64_t kMostPoints = 1ull << 32;  // of a 32-bit Sobol sequence
 constexpr double kDefaultTarget = 0.01;
+constexpr double kTilesPower = 1.5;  // of their number, with which the error of tiles falls (docs/exact.md)
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 std::uint64_t power_of_two_above(std::uint64_t value) {
@@ -52,6 +53,8 @@ CourseRules rules_of(const PassPlan& plan, const TraceOptions& o) {
   rules.enough_points = (kZeroRays + replicates - 1) / replicates;
   // A pixel's half-difference has one degree of freedom; a picture's error is the mean over all pixels and has many.
   rules.t95 = plan.request.paints() ? 1.96 : student_t95(static_cast<int>(replicates) - 1);
+  // Where time may end the search, every doubling is a result to fall back on.
+  if (plan.request.tiles() && o.time_limit_s == 0.0) rules.anew_power = kTilesPower;
   if (plan.request.paints()) {
     rules.fixed_points = picture_points(plan, o);
     rules.fixed_end = o.rays != 0 || !rules.target_asked ? "rays" : "samples";

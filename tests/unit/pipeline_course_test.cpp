@@ -46,6 +46,22 @@ std::size_t count_of(const Numbers& numbers, int value) {
 
 }  // namespace
 
+TEST_CASE(
+    "where points are found anew, a search leaps to where the target is expected and a confirmation is one step") {
+  CourseRules rules = search_rules();
+  rules.most_points = 512;
+  rules.anew_power = 1.5;
+  Course course(rules);
+  step(course, "search", 4, 0, 0.4);     // 2 * 0.4 is 8 times 0.1: 4 times the points and a tenth, so 8 times
+  step(course, "search", 32, 0, 0.06);   // nearly there: twice
+  step(course, "search", 64, 0, 0.04);   // meets it
+  step(course, "confirm", 64, 1, 0.06);  // misses
+  step(course, "search", 128, 0, 0.7);   // 8 times would be more than there may be
+  step(course, "search", 512, 0, 0.3);
+  CHECK(!course.next());
+  CHECK(std::string(course.state().ended_by) == "max_rays");
+}
+
 TEST_CASE("a search doubles to the target, confirms on fresh scrambles, and goes on where that misses") {
   Course course(search_rules());
   step(course, "search", 4, 0, 0.2);
