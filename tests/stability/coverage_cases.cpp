@@ -38,6 +38,11 @@ Outcome sobol_bins(std::size_t group) {
   return {found[group].share() >= 0.92 && found[group].intervals > 1000, found[group].text()};
 }
 
+Outcome tiles_bins(std::size_t group) {
+  static const ByHits found = cover_tiles_bins(kSeeds);
+  return {found[group].share() >= 0.92 && found[group].intervals > 1000, found[group].text()};
+}
+
 Outcome pixels(bool sobol) {
   const PixelShares s = cover_pixels(sobol);
   const double one = 1.0 * s.within_one / s.pixels, wide = 1.0 * s.within_95 / s.pixels;
@@ -63,6 +68,10 @@ std::vector<Case> coverage_cases() {
     cases.push_back({"coverage", fmt::format("bins with {}, Sobol", kHitsGroups[g]), "at least 92 % of the intervals",
                      "strata make the spread of hits smaller than Poisson's: no closed form", false,
                      [g] { return sobol_bins(g); }});
+  for (std::size_t g = 0; g < kHitsGroups.size(); ++g)
+    cases.push_back({"coverage", fmt::format("bins with {}, tiles", kHitsGroups[g]), "at least 92 % of the intervals",
+                     "tiles cut at edges make the spread of hits smaller than Poisson's: no closed form", false,
+                     [g] { return tiles_bins(g); }});
   for (const bool sobol : {true, false})
     cases.push_back({"coverage", fmt::format("pixels of a sphere, {}", sobol ? "Sobol" : "random"),
                      "50 % within 1 half-difference, 95 % within 12.7", "Student's t of 1; 4 standard errors", false,

@@ -200,6 +200,28 @@ ByHits cover_bins(bool sobol, int seeds) {
   return groups;
 }
 
+ByHits cover_tiles_bins(int seeds) {
+  ByHits groups;
+  const MeshPtr mesh = sphere_mesh(24, 12, 1.0);
+  const clray::Vec3 s = toward(0.7, 0.4);
+  const Pulse pulse = convex_lambert(*mesh, 0.5, s, s);
+  const double first = -2.0 / kLightSpeed, width = 2.0 / kLightSpeed / kBins;
+  Scene scene = scene_of(mesh, lambert(0.5));
+  window(monostatic(scene, s), first, 0.0, kBins);
+  scene.trace.method = clray::Method::tiles;
+  for (int log2_rays : {10, 12, 14, 16})
+    for (int seed = 1; seed <= seeds; ++seed) {
+      const clray::DelayResult d = run(rays(scene, log2_rays, static_cast<std::uint64_t>(seed))).delay.at(0);
+      for (int b = 0; b < kBins; ++b) {
+        const auto i = static_cast<std::size_t>(b);
+        const double from = first + b * width;
+        const double exact = pulse.total_m2_per_sr * (pulse.share(from + width) - pulse.share(from));
+        if (d.resolved[i]) add_bin(d.bin_m2_per_sr[i], d.bin_standard_error[i], d.hits[i], exact, &groups);
+      }
+    }
+  return groups;
+}
+
 ByHits simulate_bins(int seeds) {
   constexpr int kReplicates = 16;
   ByHits groups;

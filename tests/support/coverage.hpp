@@ -55,6 +55,9 @@ ByHits cover_bins(bool sobol, int seeds);
 /// The same for plain random points without the program: drawn, binned and averaged here.
 ByHits simulate_bins(int seeds);
 
+/// Intervals of the resolved bins of a faceted sphere by tiles, as in cover_bins. The exact bins are closed forms.
+ByHits cover_tiles_bins(int seeds);
+
 /// Pixels of a Lambert sphere's picture whose radiance lies within 1 and 12.7 half-differences of the exact one. Of two
 /// equal normal halves Student's t with one degree of freedom says 50 % and 95 %.
 struct PixelShares {
