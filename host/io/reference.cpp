@@ -127,7 +127,8 @@ Reference from_table(const std::string& file, const std::string& text) {
     ++number;
     if (line.substr(0, kTotal.size()) == kTotal) {
       const auto rest = line.substr(kTotal.size());
-      if (!read_number(rest.substr(0, rest.find(' ')), stated)) fail(file, number, "the total is not a number");
+      if (!read_number(rest.substr(0, rest.find_first_of(" ,")), stated))
+        fail(file, number, "the total is not a number");
     }
     if (line.empty() || line == "\r" || line.front() == '#' || line.substr(0, 8) == "delay_ns") continue;
     const auto cells = split(line);

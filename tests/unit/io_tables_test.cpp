@@ -282,6 +282,11 @@ TEST_CASE("a reference turns claimed into true error") {
     CHECK(parse(table.rows[0][3]) == doctest::Approx(0.02 / 0.32).epsilon(1e-14));
     CHECK(parse(table.rows[2][3]) == doctest::Approx(1.0 / 24.0).epsilon(1e-14));
   }
+  // The reference that says most: an exact one (its comment has a comma behind the total).
+  truth.delay.front().intensity_m2_per_sr.rounding_bound = 1e-15;
+  write_result(truth, io_test::scene(), scratch / "exact", no_plots());
+  for (const char* file : {"exact/summary.json", "exact/delay.csv"})
+    CHECK(relative_true_error(result, load_reference(scratch / file)) == doctest::Approx(1.0 / 24.0).epsilon(1e-14));
   spit(scratch / "hand.csv", "0.5,2\n1.0,3\n1.5,1\n");
   CHECK(load_reference(scratch / "hand.csv").totals.at("") == 3.0);
 }
