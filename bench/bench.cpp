@@ -53,11 +53,6 @@ std::string device_line(const clray::DeviceInfo& d) {
   return fmt::format("{} ({}, {} compute units, {})", d.name, d.platform, d.compute_units, d.driver);
 }
 
-std::string test_device_choice() {
-  const char* name = std::getenv("CLRAY_TEST_DEVICE");
-  return name ? name : "cpu";
-}
-
 double median(std::vector<double> values) {
   return quantile(std::move(values), 0.5);
 }

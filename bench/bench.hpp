@@ -43,9 +43,6 @@ void write_text(const std::string& folder, const std::string& name, const std::s
 std::string device_line();
 std::string device_line(const clray::DeviceInfo& device);
 
-/// What CLRAY_TEST_DEVICE says, else "cpu".
-std::string test_device_choice();
-
 double median(std::vector<double> values);
 /// The value below which `share` of the values lie (nearest rank).
 double quantile(std::vector<double> values, double share);

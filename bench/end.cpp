@@ -218,7 +218,7 @@ bool strayed(const BodyCurves& body) {
 int end(const Options& asked) {
   Options options = asked;
   if (options.quick) options.seeds = std::min(options.seeds, 5);
-  clray::Device device(options.devices.empty() ? test_device_choice() : options.devices.front());
+  clray::Device device(options.devices.empty() ? clray_test::device_name() : options.devices.front());
   std::vector<BodyCurves> all;
   std::string about;
   bool wrong = false;

@@ -113,7 +113,7 @@ int error(const Options& asked) {
   }
   options.max_log2_rays = std::max(options.max_log2_rays, options.min_log2_rays);
   const std::string typed = command_options(options);
-  if (options.devices.empty()) options.devices.push_back(test_device_choice());
+  if (options.devices.empty()) options.devices.push_back(clray_test::device_name());
   // A short or partial run does not replace the results of the full one.
   const std::string stem = options.quick || !options.only.empty() ? "error-short" : "error";
   const std::vector<ErrorCase> cases = error_cases();

@@ -42,19 +42,19 @@ void trace_in_threads(const std::vector<clray::Device*>& devices) {
 
 TEST_CASE("eight threads trace eight scenes, each on a device of its own") {
   std::vector<clray::Device> own;
-  for (int i = 0; i < 8; ++i) own.emplace_back("cpu");
+  for (int i = 0; i < 8; ++i) own.emplace_back(device_name());
   std::vector<clray::Device*> devices;
   for (clray::Device& d : own) devices.push_back(&d);
   trace_in_threads(devices);
 }
 
 TEST_CASE("eight threads trace eight scenes on one device, which takes them one by one") {
-  clray::Device shared("cpu");
+  clray::Device shared(device_name());
   trace_in_threads(std::vector<clray::Device*>(8, &shared));
 }
 
 TEST_CASE("tracing from a progress callback on the same device is refused, on another it works") {
-  clray::Device other("cpu");
+  clray::Device other(device_name());
   int refused = 0, traced = 0;
   clray::TraceHooks hooks;
   hooks.progress = [&](const clray::Progress&) {

@@ -70,11 +70,13 @@ void fan(Mesh& mesh, int sides, std::uint32_t first, std::uint32_t tip, bool up)
 
 }  // namespace
 
+std::string device_name() {
+  const char* name = std::getenv("CLRAY_TEST_DEVICE");
+  return name ? name : "cpu";
+}
+
 clray::Device& device() {
-  static clray::Device opened([] {
-    const char* name = std::getenv("CLRAY_TEST_DEVICE");
-    return std::string(name ? name : "cpu");
-  }());
+  static clray::Device opened(device_name());
   return opened;
 }
 

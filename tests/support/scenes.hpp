@@ -21,7 +21,9 @@ constexpr double radians(double degrees) {
 
 using MeshPtr = std::shared_ptr<const clray::Mesh>;
 
-/// The device of all tests of a program, opened once: the one named by CLRAY_TEST_DEVICE, else the CPU.
+/// The one named by CLRAY_TEST_DEVICE, else "cpu".
+std::string device_name();
+/// The device of all tests of a program, opened once.
 clray::Device& device();
 
 // Materials.
