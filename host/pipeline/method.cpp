@@ -16,10 +16,14 @@
 namespace clray {
 namespace {
 
-// Seconds on one core, of a face of a view and of a ray, as a grid of 614 Sun directions on topex.obj took
-// (docs/exact.md). Their ratio decides.
-constexpr double kSecondsPerFace = 7e-6, kSecondsPerRay = 1.4e-6;
-constexpr double kSecondsPerCutFace = 2.8e-6, kSecondsPerTile = 5e-6, kTilesOfPercent = 4000.0;
+// Seconds on one core, as bodies of 36 to 10^6 faces took (docs/exact.md, "What auto takes"). Their ratios decide.
+constexpr double kSecondsPerFace = 8e-6;                               // of a view that is solved
+constexpr double kSecondsPerCutFace = 4e-6, kSecondsPerTile = 5e-6;    // of a view in tiles
+constexpr double kSecondsPerTreeFace = 2.5e-6;                         // of the tree that rays need
+constexpr double kSecondsPerRay = 0.1e-6, kSecondsPerLevel = 0.06e-6;  // and of each level of that tree
+constexpr double kTilesOfPercent = 4000.0, kRaysOfPercent = 1u << 14;  // that reach 1 %
+constexpr double kTilesPower = 1.5, kRaysPower = 0.75;                 // with which errors fall (docs/error.md)
+constexpr double kSearchAndConfirm = 3.0;                              // times as many rays as the answer's
 constexpr double kMuchDearer = 10.0;
 
 /// Whether a detector's sums can be made from visible faces. What no sum of its own has reads those of others.
@@ -88,20 +92,29 @@ double seconds_to_solve(const Geometry& geometry, std::size_t times) {
   return kSecondsPerFace * static_cast<double>(geometry.primitives.size()) * static_cast<double>(times);
 }
 
-/// What tiles take to reach the target, s on one core. The error falls with the power -1.5 of their number; the rest
-/// are figures of docs/exact.md.
+/// What tiles take to reach the target, s on one core.
 double seconds_of_tiles(const Scene& scene, const Geometry& geometry, std::size_t views) {
-  const double target = scene.trace.target_error_percent / 100.0;
+  const double finer = 1.0 / scene.trace.target_error_percent;
   const double tiles =
-      std::max(static_cast<double>(kFirstPoints), kTilesOfPercent * std::pow(0.01 / target, 2.0 / 3.0));
+      std::max(static_cast<double>(kFirstPoints), kTilesOfPercent * std::pow(finer, 1.0 / kTilesPower));
   const double faces = kSecondsPerCutFace * static_cast<double>(geometry.primitives.size());
   return (faces + kSecondsPerTile * tiles) * static_cast<double>(views);
 }
 
-/// What as many rays take as are traced by default.
-double seconds_of_rays(std::size_t views, int replicates) {
-  const double least = static_cast<double>(kFirstPoints) * replicates * static_cast<double>(views);
-  return kSecondsPerRay * std::max(static_cast<double>(kDefaultRays), least);
+/// What so many rays take, and the tree that they need.
+double seconds_of_rays(const Geometry& geometry, double rays) {
+  const auto faces = static_cast<double>(geometry.primitives.size());
+  return kSecondsPerTreeFace * faces + (kSecondsPerRay + kSecondsPerLevel * std::log2(faces + 1.0)) * rays;
+}
+
+/// What rays take to the target, or as many as are traced by default.
+double seconds_of_points(const Scene& scene, const Geometry& geometry, std::size_t views) {
+  const double least = static_cast<double>(kFirstPoints) * scene.trace.replicates;
+  if (scene.trace.target_error_percent == 0.0)
+    return seconds_of_rays(geometry, std::max(static_cast<double>(kDefaultRays), least * static_cast<double>(views)));
+  const double finer = 1.0 / scene.trace.target_error_percent;
+  const double answer = std::max(least, kRaysOfPercent * std::pow(finer, 1.0 / kRaysPower));
+  return seconds_of_rays(geometry, kSearchAndConfirm * answer * static_cast<double>(views));
 }
 
 /// Why tiles cannot find a detector's numbers; empty: they can.
@@ -165,14 +178,19 @@ MethodChoice choose_method(const Scene& scene, const Geometry& geometry, const D
   if (t.rays != 0) return points(fmt::format("rays = {} are asked for", t.rays));
   if (!why.empty()) return points(why);
   const double seconds = seconds_to_solve(geometry, views * sights_of(scene, detector));
-  if (no_tiles.empty() && t.target_error_percent > 0.0 && seconds_of_tiles(scene, geometry, views) < seconds)
-    return {PassMethod::tiles, fmt::format("they reach {:g} % sooner than all is solved", t.target_error_percent)};
+  const double with_rays = seconds_of_points(scene, geometry, views);
+  if (t.target_error_percent > 0.0) {
+    const double with_tiles = no_tiles.empty() ? seconds_of_tiles(scene, geometry, views) : HUGE_VAL;
+    const std::string sooner = fmt::format("they reach {:g} % sooner than all is solved", t.target_error_percent);
+    if (with_rays < std::min(seconds, with_tiles)) return points(sooner);
+    if (with_tiles < seconds) return {PassMethod::tiles, sooner};
+  }
   // An exact pass that time cuts off has no result.
   if (t.time_limit_s > 0.0 && seconds > 0.5 * t.time_limit_s) {
     const std::string late = fmt::format("solving it may take longer than the time limit of {:g} s", t.time_limit_s);
     return no_tiles.empty() ? MethodChoice{PassMethod::tiles, late} : points(late);
   }
-  if (seconds > kMuchDearer * seconds_of_rays(views, t.replicates)) {
+  if (seconds > kMuchDearer * with_rays) {
     return points(fmt::format("{} faces in {} views would take much longer than rays; --method exact solves them",
                               geometry.primitives.size(), views));
   }
