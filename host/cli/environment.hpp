@@ -3,26 +3,20 @@
 // there at its first call.
 #pragma once
 
-#include <memory>
-#include <string>
-
-#include "text/temporaries.hpp"
+#include "kernel_folder.hpp"
 
 namespace clray::cli {
 
-/// Sets PoCL's variables for as long as it lives; made before the first thread and the first OpenCL call.
-/// PoCL's handler would turn a host division by zero into 0. If the folder of compiled kernels cannot be written, every
-/// build would fail, so a temporary folder replaces it.
+/// Sets PoCL's variables; made before the first thread and the first OpenCL call. PoCL's handler would turn a host
+/// division by zero into 0.
 class Environment {
  public:
   Environment();
-  ~Environment();
-  Environment(const Environment&) = delete;
-  Environment& operator=(const Environment&) = delete;
+
+  KernelFolder& kernels() { return kernels_; }
 
  private:
-  std::string temporary_kernels_;
-  std::unique_ptr<text::Temporary> noted_;
+  KernelFolder kernels_;
 };
 
 }  // namespace clray::cli

@@ -92,8 +92,9 @@ std::shared_ptr<std::string> range_with_station(const Scene& scene, Device& devi
 /// A run from its scene to its files.
 class Run {
  public:
-  Run(const cli::Arguments& arguments, const Scene& scene, cli::Signals& signals, Warnings& warnings)
-      : arguments_(arguments), scene_(scene), signals_(signals), warnings_(warnings) {}
+  Run(const cli::Arguments& arguments, const Scene& scene, cli::Signals& signals, cli::KernelFolder& kernels,
+      Warnings& warnings)
+      : arguments_(arguments), scene_(scene), signals_(signals), kernels_(kernels), warnings_(warnings) {}
 
   int trace_and_write(Clock::time_point start, double load_s) {
     const std::string asked = output_folder(arguments_, scene_);
@@ -159,6 +160,7 @@ class Run {
     cli::ProgressBar bar(!arguments_.quiet);
     TraceHooks hooks;
     hooks.progress = [&](const Progress& progress) {
+      if (!finished_something_ && progress.keeps) kernels_.note_files();  // programs are built
       finished_something_ = finished_something_ || progress.keeps;
       if (progress.keeps || saving_.share.of > 1) signals_.keep_what_is_finished();
       bar.show(progress);
@@ -199,6 +201,7 @@ class Run {
   const cli::Arguments& arguments_;
   const Scene& scene_;
   cli::Signals& signals_;
+  cli::KernelFolder& kernels_;
   Warnings& warnings_;
   Reference reference_;
   Saving saving_;
@@ -224,7 +227,7 @@ int verify_sums(const cli::Arguments& arguments, const Scene& scene, cli::Signal
   throw Error(ErrorCode::bug, "not the same: " + compared + ", of which some differ", file);
 }
 
-int run(int argc, char** argv, cli::Signals& signals) {
+int run(int argc, char** argv, cli::Signals& signals, cli::KernelFolder& kernels) {
   const auto start = Clock::now();
   const auto arguments = cli::parse_arguments(argc, argv);
   if (arguments.finished) return 0;
@@ -242,13 +245,14 @@ int run(int argc, char** argv, cli::Signals& signals) {
     return 0;
   }
   warnings.show(scene.warnings);
+  if (!kernels.trouble().empty()) warnings.show({kernels.trouble()});
   if (arguments.dump_kernel) {
     Device device(arguments.device);
     print(kernel_source(scene, device));
     return 0;
   }
   if (arguments.verb == "verify") return verify_sums(arguments, scene, signals);
-  return Run(arguments, scene, signals, warnings).trace_and_write(start, seconds_since(start));
+  return Run(arguments, scene, signals, kernels, warnings).trace_and_write(start, seconds_since(start));
 }
 
 int fault(const char* format, const std::string& words, ErrorCode code) {
@@ -258,9 +262,9 @@ int fault(const char* format, const std::string& words, ErrorCode code) {
 }
 
 /// Every error as an exit status.
-int run_with_errors(int argc, char** argv, cli::Signals& signals) {
+int run_with_errors(int argc, char** argv, cli::Signals& signals, cli::KernelFolder& kernels) {
   try {
-    const int status = run(argc, argv, signals);
+    const int status = run(argc, argv, signals, kernels);
     flush_output();
     return status;
   } catch (const Error& error) {
@@ -280,7 +284,7 @@ int run_with_errors(int argc, char** argv, cli::Signals& signals) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const cli::Environment environment;
+  cli::Environment environment;
   cli::Signals signals;
-  return run_with_errors(argc, argv, signals);
+  return run_with_errors(argc, argv, signals, environment.kernels());
 }

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 #include <stdlib.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cstdint>
@@ -14,6 +15,7 @@
 
 #include "device/program.hpp"
 #include "text/hash.hpp"
+#include "text/output_file.hpp"
 
 namespace clray {
 namespace {
@@ -49,10 +51,18 @@ Note note_of(const OpenedDevice& opened, const std::string& what) {
           hashes + fmt::format("{:016x}\n", hash_of(hashes))};
 }
 
+/// Nobody else can have written there.
+bool is_own(const fs::path& folder) {
+  struct stat status {};
+  return ::stat(folder.c_str(), &status) == 0 && status.st_uid == ::geteuid() &&
+         (status.st_mode & (S_IWGRP | S_IWOTH)) == 0;
+}
+
 }  // namespace
 
 bool remembered(const OpenedDevice& opened, const std::string& what) {
   const Note note = note_of(opened, what);
+  if (!is_own(note.path.parent_path())) return false;
   std::ifstream file(note.path, std::ios::binary);
   return std::string((std::istreambuf_iterator<char>(file)), {}) == note.text;
 }
@@ -63,14 +73,13 @@ void remember(const OpenedDevice& opened, const std::string& what) {
   fs::create_directories(note.path.parent_path(), error);
   if (error) return;
   std::string temporary = note.path.string() + "-XXXXXX";
-  const int descriptor = mkstemp(temporary.data());
-  if (descriptor < 0) return;
-  close(descriptor);
-  std::ofstream file(temporary, std::ios::binary);
-  file << note.text;
-  file.close();
-  if (file) fs::rename(temporary, note.path, error);  // so it appears whole, even if others write it as well
-  if (!file || error) fs::remove(temporary, error);
+  const int file = mkstemp(temporary.data());
+  if (file < 0) return;
+  const bool whole =
+      write(file, note.text.data(), note.text.size()) == static_cast<ssize_t>(note.text.size()) && fsync(file) == 0;
+  close(file);
+  if (whole) fs::rename(temporary, note.path, error);  // so it appears whole, even if others write it as well
+  if (!whole || error) fs::remove(temporary, error);
 }
 
 std::string kernel_cache_folder() {
@@ -81,21 +90,12 @@ std::string kernel_cache_folder() {
 }
 
 bool kernel_cache_writable() {
-  const fs::path folder = kernel_cache_folder();
-  std::error_code error;
-  fs::create_directories(folder, error);
-  std::string name = (folder / "clray-probe-XXXXXX").string();
-  const int file = mkstemp(name.data());
-  if (file < 0) return false;
-  const bool written = write(file, "clray", 5) == 5;
-  close(file);
-  unlink(name.c_str());
-  return written;
+  return text::folder_fault(kernel_cache_folder()).empty();
 }
 
 std::string unwritable_cache() {
-  return "the folder of compiled kernels, " + kernel_cache_folder() +
-         ", cannot be written: POCL_CACHE_DIR names another";
+  return "the folder of compiled kernels, " + kernel_cache_folder() + ", cannot be written (" +
+         text::folder_fault(kernel_cache_folder()) + "): POCL_CACHE_DIR names another";
 }
 
 }  // namespace clray

@@ -3,10 +3,12 @@
 #include "text/output_file.hpp"
 
 #include <fcntl.h>
+#include <stdlib.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 
 #include "clray/error.hpp"
 #include "text/temporaries.hpp"
@@ -71,6 +73,21 @@ void replace_output_file(const std::string& path, std::string_view bytes) {
   }
   const std::size_t slash = path.rfind('/');
   sync_to_disk(slash == std::string::npos ? "." : path.substr(0, slash + 1));
+}
+
+std::string folder_fault(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  std::string name = folder + "/clray-probe-XXXXXX";
+  const int file = ::mkstemp(name.data());
+  if (file < 0) return std::strerror(errno);
+  const std::string bytes(1u << 18, 'c');
+  errno = ENOSPC;  // where less than all is written
+  const bool whole = ::write(file, bytes.data(), bytes.size()) == static_cast<ssize_t>(bytes.size());
+  const std::string reason = whole ? "" : std::strerror(errno);
+  ::close(file);
+  ::unlink(name.c_str());
+  return reason;
 }
 
 void sync_to_disk(const std::string& path) {

@@ -33,6 +33,9 @@ class OutputFile {
 /// A file of these bytes. Throws Error(output).
 void write_output_file(const std::string& path, std::string_view bytes);
 
+/// Why a folder, which is made if it is missing, has no room for a quarter of a megabyte; empty where it has.
+std::string folder_fault(const std::string& folder);
+
 /// Forces a file, or the entries of a folder, to disk. Throws Error(output).
 void sync_to_disk(const std::string& path);
 
