@@ -39,6 +39,7 @@ struct Device::Impl {
     }
   };
   std::vector<Opened> devices;        ///< never empty
+  std::vector<std::string> notes;     ///< devices that were left out, each a sentence
   std::mutex busy;                    ///< held by a DeviceUse
   std::atomic<std::thread::id> user;  ///< the thread of that DeviceUse; none: thread::id()
 };

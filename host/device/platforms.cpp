@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <exception>
 #include <functional>
 #include <mutex>
 
@@ -219,6 +220,34 @@ OpenedDevice open_device(const FoundDevice& found) {
   });
 }
 
+std::vector<OpenedDevice> open_devices(const std::vector<FoundDevice>& devices, const std::string& choice,
+                                       const std::function<OpenedDevice(const FoundDevice&)>& open,
+                                       std::vector<std::string>* notes) {
+  std::vector<FoundDevice> chosen = choose_devices(devices, choice);
+  const std::size_t asked = chosen.size();
+  if (choice.empty()) {
+    for (const FoundDevice& cpu : of_type(devices, CL_DEVICE_TYPE_CPU, false)) {
+      if (cpu.info.fp64 && cpu.info.index != chosen.front().info.index) chosen.push_back(cpu);
+    }
+  }
+  std::vector<OpenedDevice> opened;
+  std::exception_ptr first;
+  for (const FoundDevice& found : chosen) {
+    if (choice.empty() && !opened.empty()) break;
+    try {
+      opened.push_back(open(found));
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::device || (asked == 1 && !choice.empty())) throw;
+      if (!first) first = std::current_exception();
+      notes->push_back(fmt::format("{} is left out: {}", found.info.name, error.message()));
+    }
+  }
+  if (opened.empty()) std::rethrow_exception(first);
+  if (choice.empty() && !notes->empty())
+    notes->back() += fmt::format("; {} ({}) is taken", opened.front().info.name, opened.front().info.type);
+  return opened;
+}
+
 std::vector<DeviceInfo> list_devices() {
   std::vector<DeviceInfo> list;
   for (const auto& found : find_devices()) list.push_back(found.info);
@@ -226,10 +255,12 @@ std::vector<DeviceInfo> list_devices() {
 }
 
 Device::Device(const std::string& choice) : impl_(std::make_unique<Impl>()) {
-  for (const auto& found : choose_devices(find_devices(), choice)) {
-    impl_->devices.push_back(open_device(found));
-    run_self_test(impl_->devices.back());
-  }
+  const auto open = [](const FoundDevice& found) {
+    OpenedDevice opened = open_device(found);
+    run_self_test(opened);
+    return opened;
+  };
+  impl_->devices = open_devices(find_devices(), choice, open, &impl_->notes);
 }
 Device::~Device() = default;
 Device::Device(Device&&) noexcept = default;

@@ -2,6 +2,7 @@
 // The OpenCL platforms of this machine: enumeration, choice of a device, opening.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -28,5 +29,12 @@ std::string device_type_name(cl_device_type type);
 
 /// Makes context and queue, and works out the capabilities. No self-test.
 OpenedDevice open_device(const FoundDevice& found);
+
+/// Opens and tests the devices that `choice` means; `open` throws Error(device) for one that does not work. Of "all"
+/// those that fail are left out. A default device that fails gives way to the CPU, one that was asked for does not.
+/// *notes gets a sentence for each that was left out. Throws the error where none is left.
+std::vector<OpenedDevice> open_devices(const std::vector<FoundDevice>& devices, const std::string& choice,
+                                       const std::function<OpenedDevice(const FoundDevice&)>& open,
+                                       std::vector<std::string>* notes);
 
 }  // namespace clray

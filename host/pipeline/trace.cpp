@@ -56,6 +56,7 @@ class Tracer {
     const DeviceUse use(device_);
     const double start = now();
     result_.device = device_.info();
+    result_.warnings = device_.impl().notes;
     result_.seed = scene_.trace.seed;
     result_.replicates = scene_.trace.replicates;
     const Planned planned = plan_scene(kept_, scene_);

@@ -87,6 +87,39 @@ TEST_CASE("a choice that cannot be met says what there is") {
   CHECK(error_of({kDevices[2]}, "gpu") == "there is no GPU device; there is: 2 Processor (cpu, P)");
 }
 
+TEST_CASE(
+    "a device that fails is left out and named: a default one gives way to the CPU, one that was asked for does not") {
+  const auto open_but = [](const std::string& broken) {
+    return [broken](const FoundDevice& found) {
+      if (broken.find(found.info.name) != std::string::npos)
+        throw Error(ErrorCode::device, "refused: the self-test", found.info.name);
+      OpenedDevice opened;
+      opened.info = found.info;
+      return opened;
+    };
+  };
+  std::vector<std::string> notes;
+  const auto opened = [&](const std::string& choice, const std::string& broken) {
+    notes.clear();
+    std::vector<int> indices;
+    for (const OpenedDevice& device : open_devices(kDevices, choice, open_but(broken), &notes))
+      indices.push_back(device.info.index);
+    return indices;
+  };
+  CHECK(opened("", "") == std::vector<int>{3});
+  CHECK(notes.empty());
+  CHECK(opened("", "Big GPU") == std::vector<int>{2});
+  REQUIRE(notes.size() == 1);
+  CHECK(notes[0] == "Big GPU is left out: refused: the self-test; Processor (cpu) is taken");
+  CHECK(opened("all", "Big GPU") == std::vector<int>{2});
+  CHECK(notes.size() == 2);
+  CHECK(opened("all", "Processor") == std::vector<int>{3, 4});
+  CHECK(notes == std::vector<std::string>{"Processor is left out: refused: the self-test"});
+  CHECK_THROWS_WITH_AS(opened("gpu", "Big GPU"), "Big GPU: refused: the self-test", Error);
+  CHECK_THROWS_WITH_AS(opened("all", "Big GPU Processor"), "Processor: refused: the self-test", Error);
+  CHECK_THROWS_AS(opened("", "Big GPU Processor"), Error);
+}
+
 TEST_CASE("an OpenCL error is named") {
   CHECK(cl_error_name(CL_OUT_OF_RESOURCES) == "CL_OUT_OF_RESOURCES");
   CHECK(cl_error_name(-31) == "CL_INVALID_DEVICE_TYPE");
