@@ -14,8 +14,12 @@
 #include "ephemeris/aem.hpp"
 #include "ephemeris/cpf.hpp"
 #include "ephemeris/oem.hpp"
+#include "pipeline/saved_sums.hpp"
 #include "scene/file/scene_csv.hpp"
 #include "slr/crd.hpp"
+#include "text/bytes.hpp"
+#include "text/hash.hpp"
+#include "text/input_file.hpp"
 
 namespace clray_fuzz {
 
@@ -42,6 +46,21 @@ struct Folder {
 void use(const ephemeris::Trajectory& t) {
   const double first = t.first_s(), last = t.last_s();
   for (const double s : {first, last, first + 0.5 * (last - first)}) t.at(s);
+}
+
+/// A file of sums whose head is made right, so that what is behind the checksum is read.
+void read_sums(const std::string& path) {
+  constexpr std::size_t kHead = kSavedMagic.size() + 24;  // magic, version, length, checksum
+  std::string bytes = text::read_input_file(path);
+  if (bytes.size() >= kHead) {
+    const std::string rest = bytes.substr(kHead);
+    text::BytesWriter head;
+    head.number(1);
+    head.number(rest.size());
+    head.number(checksum(rest.data(), rest.size()));
+    bytes = std::string(kSavedMagic) + head.bytes() + rest;
+  }
+  from_bytes(bytes, path);
 }
 
 struct Reader {
