@@ -20,8 +20,7 @@ constexpr int kBinRays[] = {14, 18, 22};
 
 clray::Result run(const ErrorCase& which, const Sampler& sampler, int log2_rays, int seed, clray::Device& device) {
   clray::Scene scene = which.scene;
-  scene.trace.sobol = sampler.sobol;
-  scene.trace.stratify = sampler.stratify;
+  scene.trace.sampler = sampler.kind;
   scene.trace.method = sampler.method;
   clray_test::rays(scene, log2_rays, static_cast<std::uint64_t>(seed));
   return clray::trace(scene, device);
@@ -79,7 +78,7 @@ class Seed {
   void bins_at(std::size_t i, const clray::ErrorPoint& row, const clray::Result& largest) {
     const int log2_rays = curve_.points[i].log2_rays;
     if (std::find(std::begin(kBinRays), std::end(kBinRays), log2_rays) == std::end(kBinRays)) return;
-    if (curve_.sampler.sobol && !curve_.sampler.stratify) return;  // bins are compared of the other two
+    if (curve_.sampler.kind == clray::SamplerKind::sobol) return;  // bins are compared of the other two
     Bins* bins = &curve_.bins[log2_rays];
     if (largest.rays == row.rays) return add_bins(largest.delay.at(0), *curve_.which, bins);
     const clray::Result r = run(*curve_.which, curve_.sampler, log2_rays, seed_, device_);

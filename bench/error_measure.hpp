@@ -18,13 +18,15 @@ namespace clray_bench {
 
 struct Sampler {
   const char* name;
-  bool sobol, stratify;
+  clray::SamplerKind kind;
   clray::Method method = clray::Method::points;
 };
-constexpr Sampler kSamplers[] = {{"random", false, false}, {"sobol", true, false}, {"stratified", true, true}};
+constexpr Sampler kSamplers[] = {{"random", clray::SamplerKind::random},
+                                 {"sobol", clray::SamplerKind::sobol},
+                                 {"stratified", clray::SamplerKind::strata}};
 constexpr int kSamplerCount = 3;
 /// Points in tiles (docs/exact.md), of cases with a pulse that tiles can find. More are dearer than to solve them.
-constexpr Sampler kTiles = {"tiles", true, false, clray::Method::tiles};
+constexpr Sampler kTiles = {"tiles", clray::SamplerKind::sobol, clray::Method::tiles};
 constexpr int kMostTiles = 20;  ///< log2 of their points
 
 /// One ray count: a value per seed.

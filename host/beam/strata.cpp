@@ -308,7 +308,7 @@ class Stratifier {
 
 Beams stratified(Beams beams, const Scene& scene, const Geometry& geometry, const BeamRequest& request,
                  const Steering& steering) {
-  if (request.pixels || !scene.trace.sobol || !scene.trace.stratify) return beams;
+  if (request.pixels || scene.trace.sampler != SamplerKind::strata) return beams;
   const std::uint32_t n = grid_cells(beams.views.size());
   std::vector<std::uint32_t> order;
   if (steering.bins) {

@@ -37,7 +37,7 @@ constexpr const char* kFooter =
 /// The options' texts, before they are parsed as values.
 struct Texts {
   std::optional<std::string> rays, target, time, source, observer, bins, bounces, seed, unit, group, slice, sampler,
-      format, method, checkpoint, share;
+      format, method, walk, checkpoint, share;
 };
 
 /// "; did you mean --x?" for an option that comes near, else nothing.
@@ -179,6 +179,7 @@ void add_options(CLI::App& app, Arguments& a, Texts& t) {
       ->group(test);
   app.add_flag("--force-bistatic", a.force_bistatic, wrapped("shadow rays even where the observer is at the source"))
       ->group(test);
+  text_option(app, "--walk", t.walk, "NAME", key_help("trace", "walk"), test);
   text_option(app, "--work-group", t.group, "N", "work-items per work-group, 1 to 1024 [64]", test);
   text_option(app, "--slice-points", t.slice, "N", "points per replicate and launch [sized to time]", test);
 }
@@ -243,7 +244,11 @@ void parse_values(Arguments& a, const Texts& t) {
                : word == "points" ? Method::points
                                   : Method::automatic;
   }
-  if (t.sampler) a.sobol = for_key("sampler", *t.sampler, *t.sampler, "--sampler") == "sobol";
+  if (t.sampler) {
+    const std::string word = for_key("sampler", *t.sampler, *t.sampler, "--sampler");
+    a.sampler = word == "strata" ? SamplerKind::strata : word == "sobol" ? SamplerKind::sobol : SamplerKind::random;
+  }
+  if (t.walk) a.walk = for_key("walk", *t.walk, *t.walk, "--walk");
 }
 
 /// CLI11's complaint in our words.
@@ -336,7 +341,8 @@ void apply(const Arguments& a, Scene& scene) {
   if (a.max_bounces) trace.max_bounces = *a.max_bounces;
   if (a.method) trace.method = *a.method;
   if (a.seed) trace.seed = *a.seed;
-  if (a.sobol) trace.sobol = *a.sobol;
+  if (a.sampler) trace.sampler = *a.sampler;
+  if (a.walk) trace.walk = *a.walk;
   if (a.no_specialise) trace.specialise = false;
   if (a.force_bistatic) trace.force_bistatic = true;
   if (a.work_group) trace.work_group_size = static_cast<std::uint32_t>(*a.work_group);

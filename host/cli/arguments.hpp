@@ -22,7 +22,8 @@ struct Arguments {
   std::optional<std::uint64_t> rays, seed, slice_points;
   std::optional<double> target_error_percent, time_limit_s;
   std::optional<int> max_bounces, work_group;
-  std::optional<bool> sobol;
+  std::optional<SamplerKind> sampler;
+  std::optional<std::string> walk;
   std::optional<Method> method;
   bool no_specialise = false, force_bistatic = false;
 

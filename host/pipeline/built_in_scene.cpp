@@ -128,7 +128,7 @@ PassRequest request_of(const ProgramContent& content, const Scene& scene) {
   request.lanes.resize(content.lanes);
   request.pixels = content.pixels;
   request.mirrors = content.mirrors;
-  request.replicates = 2;
+  request.replicates = content.packets ? 16 : 2;
   request.picture = {4, 3, 0};
   for (std::size_t d = 0; d < scene.detectors.size(); ++d) request.detectors.push_back(static_cast<int>(d));
   for (std::size_t o = 0; o < scene.observers.size(); ++o) request.observers.push_back(static_cast<int>(o));
@@ -170,6 +170,7 @@ ProgramContent content_of(const PassPlan& plan, bool specialised) {
   content.hinged = has("CLRAY_INSTANCED");
   content.one_sided = has("CLRAY_ONE_SIDED");
   content.shared_planes = has("CLRAY_PLANES");
+  content.packets = has("CLRAY_PACKET");
   content.specialised = specialised;
   return content;
 }
@@ -190,10 +191,11 @@ BuiltInScene built_in_scene(const ProgramContent& content) {
     scene.detectors.push_back(detector);
   }
   scene.trace.max_bounces = content.scatter ? 3 : 1;
-  scene.trace.sobol = content.sobol;
-  scene.trace.stratify = content.strata;
+  scene.trace.sampler = !content.sobol   ? SamplerKind::random
+                        : content.strata ? SamplerKind::strata
+                                         : SamplerKind::sobol;
   scene.trace.specialise = content.specialised;
-  scene.trace.replicates = 2;
+  scene.trace.walk = content.packets ? "packet" : "plain";
   BuiltInScene built{build_geometry(scene), {}};
   for (ClrayPrimitive& primitive : built.geometry.primitives) primitive.component %= content.components;
   // Only the first, which may be hinged, is asked for again; their number is that of the sums.

@@ -79,7 +79,14 @@ void set_scales(const Scales& scales, std::vector<ClrayView>* views) {
   }
 }
 
-ClrayPass constants_of(const Scene& scene, const PassPlan& plan) {
+/// One side of a square of the beam's rectangle that holds some faces, as a share 1/n: this n, a power of two.
+std::uint32_t finest_of(const Geometry& geometry) {
+  std::uint64_t finest = 1;
+  while (16 * finest * finest < geometry.primitives.size()) finest *= 2;
+  return static_cast<std::uint32_t>(finest);
+}
+
+ClrayPass constants_of(const Scene& scene, const Geometry& geometry, const PassPlan& plan) {
   ClrayPass k{};
   k.unit_scale = std::ldexp(1.0, plan.request.without_rays() ? kExactUnitBits : CLRAY_UNIT_BITS);
   for (int i = 0; i < 3; ++i) k.reference[i] = scene.reference_point[i];
@@ -92,6 +99,7 @@ ClrayPass constants_of(const Scene& scene, const PassPlan& plan) {
   k.materials = plan.materials.columns;
   k.width = plan.request.picture.width;
   k.height = plan.request.picture.height;
+  k.finest = finest_of(geometry);
   return k;
 }
 
@@ -231,7 +239,7 @@ PassPlan plan_pass(const Scene& scene, const Geometry& geometry, PassRequest req
                             {plan.materials, plan.request.lanes.size(), by, plan.paths,
                              first ? path_bins_of(plan.detectors) : std::nullopt});
   }
-  plan.constants = constants_of(scene, plan);
+  plan.constants = constants_of(scene, geometry, plan);
   plan.program = specialise(scene, geometry, plan);
   if (!plan.request.first_exact.empty()) {
     plan.first = std::make_shared<FirstBounce>();

@@ -16,6 +16,20 @@ namespace {
 // depend on it.
 constexpr std::uint64_t kWaiting = 24;
 constexpr std::uint64_t kFewKept = 24;  // numbers that a work-item keeps of a row where that is optional
+// Building a program with packets takes about half a second longer, once. Fewer rays do not win that back.
+constexpr std::uint64_t kManyRays = 1u << 20;
+
+std::string walk_line(const std::string& walk) {
+  return "walk " + walk + ": " + table_row("walk", walk).meaning;
+}
+
+/// Lets rays go as `walk` says. `no_packets`: why they do not go in packets, if they do not.
+void set_walk(const std::string& walk, const std::string& no_packets, Specialised* program) {
+  program->options.walk = table_index("walk", walk);
+  program->options.defines["CLRAY_PACKET"] = walk == "packet" ? "1" : "0";
+  program->kept.push_back(walk_line(walk));
+  if (!no_packets.empty()) program->left_out.push_back("packets of rays: " + no_packets);
+}
 
 class Specialiser {
  public:
@@ -27,6 +41,7 @@ class Specialiser {
     if (plan_.request.without_rays()) return faces();
     first_hits();
     tables();
+    walk();
     detectors();
     rays();
     sizes();
@@ -93,8 +108,6 @@ class Specialiser {
   void tables() {
     choose("brdf", plan_.materials.models, &out_.options.brdfs, "surface models");
     choose("shape", geometry_.shape_rows, &out_.options.shapes, "shapes");
-    out_.options.walk = table_index("walk", scene_.trace.walk);
-    out_.kept.push_back("walk " + scene_.trace.walk + ": " + table_row("walk", scene_.trace.walk).meaning);
     std::string others;
     for (const TableRow& row : table("detector")) {
       const bool asked = std::any_of(scene_.detectors.begin(), scene_.detectors.end(),
@@ -139,12 +152,35 @@ class Specialiser {
     *kept += size * detectors;
   }
 
-  // Packets have one ray of every replicate, in one direction and one frame.
-  bool packets() const {
-    const bool moving = std::any_of(geometry_.parts.begin(), geometry_.parts.end(),
-                                    [](const Part& part) { return part.hinged_component >= 0; });
-    return scene_.trace.walk == "packet" && scene_.trace.sobol && !plan_.request.pixels && !all_ && !moving &&
-           plan_.request.replicates == 16;
+  bool moving_parts() const {
+    return std::any_of(geometry_.parts.begin(), geometry_.parts.end(),
+                       [](const Part& part) { return part.hinged_component >= 0; });
+  }
+
+  // Whether all rays of the pass are known to be few.
+  bool few_rays() const {
+    const TraceOptions& t = scene_.trace;
+    const std::uint64_t most = t.rays != 0 ? std::min(t.rays, t.max_rays) : t.max_rays;
+    return most < kManyRays && most * plan_.request.orientations.size() < kManyRays;
+  }
+
+  // Why rays do not go in packets on any device, or "". Packets have points of every replicate, in one direction and
+  // one frame.
+  std::string no_packets() const {
+    const std::string& asked = scene_.trace.walk;
+    if (asked != "auto" && asked != "packet") return "walk " + asked + " was asked for";
+    if (plan_.request.pixels) return "rays of pixels go alone";
+    if (scene_.trace.sampler == SamplerKind::random) return "neighbours of random points are not known";
+    if (moving_parts()) return "a component is hinged";
+    if (plan_.request.replicates != 16) return "they are for 16 replicates";
+    if (all_) return "generic program (--no-specialise)";
+    return asked == "auto" && few_rays() ? "so few rays are traced sooner without" : "";
+  }
+
+  void walk() {
+    const std::string &asked = scene_.trace.walk, why = no_packets();
+    const bool alone = asked == "auto" || asked == "packet";
+    set_walk(why.empty() ? "packet" : alone ? "plain" : asked, why, &out_);
   }
 
   bool shadows() const {
@@ -155,8 +191,6 @@ class Specialiser {
   void rays() {
     const PathTraits& t = plan_.traits;
     const bool bistatic = shadows(), may_hide = t.connect && (bistatic || t.max_bounces > 1);
-    const bool moving_parts = std::any_of(geometry_.parts.begin(), geometry_.parts.end(),
-                                          [](const Part& part) { return part.hinged_component >= 0; });
     const bool bounded = std::all_of(plan_.materials.models.begin(), plan_.materials.models.end(),
                                      [](int row) { return table("brdf")[static_cast<std::size_t>(row)].bounded; });
     decide("CLRAY_SHADOW", may_hide && !geometry_.convex(), "shadow rays",
@@ -175,7 +209,7 @@ class Specialiser {
            "every material reflects from both sides");
     decide("CLRAY_PLANES", geometry_.shared_planes, "faces in one plane",
            "some overlap: the one that faces the ray is hit", "no faces overlap in one plane");
-    decide("CLRAY_INSTANCED", moving_parts, "moving parts and their transforms", "a component is hinged",
+    decide("CLRAY_INSTANCED", moving_parts(), "moving parts and their transforms", "a component is hinged",
            "no component is hinged; fixed transforms are done once on the host");
     decide("CLRAY_WIDE", t.scatter || bistatic || !bounded, "second accumulator",
            "weights may exceed the bound of a first bounce", "weights of these surfaces are bounded");
@@ -198,12 +232,7 @@ class Specialiser {
     define("CLRAY_PIXELS", plan_.request.pixels ? 1 : 0);
     define("CLRAY_MIRRORS_FIRST", plan_.request.mirrors ? 1 : 0);
     define("CLRAY_CONNECT", plan_.traits.connect ? 1 : 0);
-    define("CLRAY_SOBOL", scene_.trace.sobol ? 1 : 0);
-    define("CLRAY_PACKET", packets() ? 1 : 0);
-    // Packets are no wider than some faces. Powers of two, so that scenes share programs.
-    std::uint64_t finest = 1;
-    while (16 * finest * finest < geometry_.primitives.size()) finest *= 2;
-    if (packets()) define("CLRAY_PACKET_FINEST", finest);
+    define("CLRAY_SOBOL", scene_.trace.sampler != SamplerKind::random ? 1 : 0);
     define("CLRAY_LANES", plan_.request.lanes.size());
     define("CLRAY_CONNECTIONS", plan_.traits.connections);
     // Few sizes, so that scenes share programs.
@@ -232,8 +261,9 @@ void fit_to(Device& device, std::vector<PassPlan>* plans) {
   });
   for (PassPlan& plan : *plans) {
     if (all_cpus || !in_packets(plan)) continue;
-    plan.program.options.defines["CLRAY_PACKET"] = "0";
-    plan.program.left_out.push_back("packets of rays: for CPUs");
+    std::vector<std::string>& kept = plan.program.kept;
+    kept.erase(std::remove(kept.begin(), kept.end(), walk_line("packet")), kept.end());
+    set_walk("plain", "they are for CPUs", &plan.program);
   }
 }
 

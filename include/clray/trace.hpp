@@ -18,6 +18,10 @@ class Device;
 /// exact where the scene allows it and no rays are given, and tiles where they reach a target sooner.
 enum class Method { automatic, exact, tiles, points };
 
+/// How rays of a beam are spread (docs/sampling.md): plain random points on the rectangle that bounds the body, Sobol
+/// points on it, or Sobol points on strata of silhouette, delays and peaks. Pictures take the first two alone.
+enum class SamplerKind { random, sobol, strata };
+
 /// When to stop and how to sample; `clray --list trace` has the ranges. Rays, target or time end the run, whichever
 /// comes first. Without any of them it goes to 1 %, with at least 2^22 rays over all orientations together.
 struct TraceOptions {
@@ -28,10 +32,9 @@ struct TraceOptions {
   double time_limit_s = 0.0;            ///< of tracing; 0: none
   std::uint64_t max_rays = 1ull << 32;  ///< where a search for a target gives up
   std::uint64_t seed = 1;
-  int replicates = 16;          ///< independent replicates (the error's degrees of freedom + 1)
-  std::string walk = "plain";   ///< through the BVH: a row of walk.def; results have the same bits under each
-  bool sobol = true;            ///< false: plain random sampling
-  bool stratify = true;         ///< with sobol: spread points over silhouette, delays and peaks (docs/sampling.md)
+  int replicates = 16;        ///< independent replicates (the error's degrees of freedom + 1)
+  std::string walk = "auto";  ///< through the BVH: auto, or a row of walk.def; results have the same bits under each
+  SamplerKind sampler = SamplerKind::strata;
   bool specialise = true;       ///< false: the generic program (same digest, slower)
   bool force_bistatic = false;  ///< shadow rays even where the observer is at the source
   bool allow_failures = false;  ///< report non-finite weights and overflows instead of throwing

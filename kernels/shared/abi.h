@@ -133,7 +133,7 @@ typedef struct ClrayPass {
   u32 max_bounces;
   u32 width, height;  // pixels
   u32 materials;      // columns of the material table
-  u32 padding;
+  u32 finest;         // packets are no wider than 1/finest of the beam's rectangle: as wide as some faces
 } ClrayPass;
 
 // Shares of energy and momentum are below this on a first bounce; larger ones go to the second accumulator.

@@ -363,7 +363,7 @@ static void trace_packets(const Buffers* g, u32 view, u32 first_point, u32 point
   }
   const u32 count = cells * replicates;
   packet_sort(point, count, order);
-  const f64 widest = f64_min(8.0 / sqrt((f64)points), 1.0 / (f64)CLRAY_PACKET_FINEST);
+  const f64 widest = f64_min(8.0 / sqrt((f64)points), 1.0 / (f64)max(g->pass->finest, 1u));
   Packet packet;
   for (u32 begin = 0; begin < count; begin += packet.rays) {
     f64 low_u = 1.0, high_u = 0.0, low_v = 1.0, high_v = 0.0;

@@ -27,7 +27,7 @@ TEST_CASE("help names every option, on standard output, with status 0") {
         "--source",       "--observer", "--bins",          "--max-bounces", "--seed",           "--material",
         "--out",          "--explain",  "--sampler",       "--reference",   "--no-plots",       "--quiet",
         "--dump-kernel",  "--check",    "--no-specialise", "--length-unit", "--force-bistatic", "--work-group",
-        "--slice-points", "--version",  "--format"}) {
+        "--slice-points", "--version",  "--format",        "--walk"}) {
     CAPTURE(option);
     CHECK(contains(help.out, std::string("  ") + option));
   }
@@ -93,7 +93,7 @@ TEST_CASE("wrong arguments: status 2, the option, the word and what was expected
       {{"--seed", "1e19"}, {"--seed"}},
       {{"--time-limit", "0s"}, {"--time-limit", "(0,inf)"}},
       {{"--length-unit", "furlong"}, {"--length-unit", "ft"}},
-      {{"--sampler", "halton"}, {"--sampler", "random, sobol"}},
+      {{"--sampler", "halton"}, {"--sampler", "random, sobol, strata"}},
       {{"--format", "netcfd"}, {"--format", "csv or netcdf", "did you mean 'netcdf'?"}},
       {{"--ray", "5"}, {"no option --ray", "did you mean --rays?"}},
       {{"other.obj"}, {"one scene at a time"}},

@@ -219,8 +219,10 @@ RandomScene draw_scene(std::uint64_t seed, int frames, bool flat) {
   scene.name = fmt::format("law-{}", seed);
   scene.trace.specialise = false;
   scene.trace.max_bounces = frame.bounces;
-  scene.trace.sobol = frame.sobol;
-  scene.trace.stratify = draw.chance(0.8);
+  const bool strata = draw.chance(0.8);
+  scene.trace.sampler = !frame.sobol ? clray::SamplerKind::random
+                        : strata     ? clray::SamplerKind::strata
+                                     : clray::SamplerKind::sobol;
   if (draw.chance(0.3)) scene.reference_point = draw.place(1.0);
   draw_source(draw, frame, &scene);
   for (int m = 0; m < kMaterials; ++m)

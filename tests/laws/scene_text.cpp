@@ -62,7 +62,9 @@ class Text {
       keys("detector", d.kind, d.parameters);
     }
     const clray::TraceOptions& t = scene_.trace;
-    line("[trace]\nmax_bounces = {}\nseed = {}\nsampler = \"{}\"", t.max_bounces, t.seed, t.sobol ? "sobol" : "random");
+    constexpr const char* kSamplers[] = {"random", "sobol", "strata"};
+    line("[trace]\nmax_bounces = {}\nseed = {}\nsampler = \"{}\"", t.max_bounces, t.seed,
+         kSamplers[static_cast<int>(t.sampler)]);
     if (t.rays > 0) line("rays = {}", t.rays);
     std::ofstream(folder_ + "/scene.toml") << text_;
     return text_;

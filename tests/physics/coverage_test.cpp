@@ -12,7 +12,7 @@ using namespace clray_test;
 
 TEST_CASE("intervals hold the exact value 92 to 98 % of the time, every detector, Sobol and random") {
   for (const CoverageScene& scene : coverage_scenes()) {
-    if (!scene.scene.trace.sobol && !long_tests()) continue;
+    if (scene.scene.trace.sampler == clray::SamplerKind::random && !long_tests()) continue;
     const std::vector<Coverage> found = cover(scene);
     for (std::size_t k = 0; k < found.size(); ++k) {
       INFO(scene.name, ", ", scene.claims[k].name, ": ", found[k].text());

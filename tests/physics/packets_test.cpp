@@ -5,6 +5,7 @@
 // sizes, with and without strata, bounces and shadows.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -79,7 +80,7 @@ TEST_CASE("packets give the digests of rays alone: shared planes, shapes, bounce
   const clray::Vec3 from = toward(0.7, 0.4);
   for (const int log2_rays : {4, 7, 12, 15}) check_same("rays", seen(scene, from, log2_rays));
   Scene even = seen(scene, from, 13);
-  even.trace.stratify = false;
+  even.trace.sampler = clray::SamplerKind::sobol;
   check_same("without strata", even);
   Scene slices = seen(scene, from, 14);
   slices.trace.slice_points = 100;
@@ -89,4 +90,30 @@ TEST_CASE("packets give the digests of rays alone: shared planes, shapes, bounce
   check_same("three bounces", bounces);
   bistatic(bounces, from, toward(1.2, -0.3));
   check_same("shadows", bounces);
+}
+
+TEST_CASE("packets are taken where they may be and pay, or where they are asked for") {
+  const auto in_packets = [](const Scene& scene) {
+    const clray::Result result = run(scene);
+    const auto says = [](const std::vector<std::string>& lines, const std::string& text) {
+      return std::any_of(lines.begin(), lines.end(), [&](const std::string& l) { return l.find(text) == 0; });
+    };
+    const bool packets = says(result.kept, "walk packet: ");
+    CHECK(packets != says(result.kept, "walk plain: "));
+    CHECK(packets != says(result.left_out, "packets of rays: "));
+    return packets;
+  };
+  const Scene many = seen(scene_of(sphere_mesh(8, 4, 1.0), lambert(0.5)), {0, 0, 1}, 20);
+  CHECK(in_packets(many));
+  Scene scene = seen(many, {0, 0, 1}, 12);
+  CHECK_FALSE(in_packets(scene));  // few rays
+  scene.trace.walk = "packet";
+  CHECK(in_packets(scene));
+  scene = many;
+  scene.trace.walk = "plain";
+  CHECK_FALSE(in_packets(scene));
+  scene = seen(many, {0, 0, 1}, 12);
+  scene.trace.walk = "packet";  // what they cannot do goes alone all the same
+  scene.trace.sampler = clray::SamplerKind::random;
+  CHECK_FALSE(in_packets(scene));
 }

@@ -45,7 +45,7 @@ void compare(clray::Scene scene, clray::Vec3 s, clray::Vec3 o, bool same, Tally*
   same ? monostatic(scene, s) : bistatic(scene, s, o);
   if (same) o = s;
   rays(scene, 17);
-  scene.trace.stratify = false;  // the documented points, cells apart
+  scene.trace.sampler = clray::SamplerKind::sobol;  // the documented points, cells apart
   const clray::Result result = run(scene);
   REQUIRE(result.delay.size() == 1);
   const clray::DelayResult& found = result.delay[0];
@@ -137,7 +137,7 @@ TEST_CASE("random sampling draws the same Philox points as documented") {
   clray::Scene scene = scene_of(box_mesh(1.0, 2.0, 3.0), lambert(0.5));
   const clray::Vec3 s = toward(0.7, 0.4);
   monostatic(scene, s);
-  scene.trace.sobol = false;
+  scene.trace.sampler = clray::SamplerKind::random;
   rays(scene, 14, 0x123456789abcdefull);
   const clray::Result result = run(scene);
   const ref::Body body = ref::body_of(scene);

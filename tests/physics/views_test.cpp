@@ -117,7 +117,7 @@ TEST_CASE("views share no random numbers") {
   Scene scene = scene_of("sphere", {{"radius", 1.0}}, lambert(1.0));
   monostatic(scene, {0.0, 0.0, 1.0});
   scene.motion = full_turn(kSteps);
-  scene.trace.sobol = false;
+  scene.trace.sampler = clray::SamplerKind::random;
   const Result result = run(rays(detect(scene, "spectrometer"), 12));
   REQUIRE(result.spectrometer.size() == kSteps);
   const double exact = 2.0 / 3.0;  // πR²·2/(3π)

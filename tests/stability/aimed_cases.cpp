@@ -102,8 +102,7 @@ Outcome aimed(bool sobol, int log2_rays) {
   if (std::adjacent_find(feet.begin(), feet.end(), same) != feet.end())
     return {false, "two feet on one upright line: the seed does not do"};
   Scene scene = scene_of(cut_at(feet), lambert(1.0));
-  scene.trace.sobol = sobol;
-  scene.trace.stratify = false;
+  scene.trace.sampler = sobol ? clray::SamplerKind::sobol : clray::SamplerKind::random;
   const clray::Result result = run(rays(scene, log2_rays, kSeed));
   const clray::DelayResult& d = result.delay.at(0);
   const std::uint64_t hits = std::accumulate(d.hits.begin(), d.hits.end(), std::uint64_t{0});

@@ -56,8 +56,7 @@ Outcome last_points(bool sobol) {
   constexpr std::uint32_t kReplicates = 4;
   Scene scene = scene_of("sphere", {{"radius", 1.0}}, lambert(1.0));
   scene.trace.replicates = kReplicates;
-  scene.trace.sobol = sobol;
-  scene.trace.stratify = false;
+  scene.trace.sampler = sobol ? clray::SamplerKind::sobol : clray::SamplerKind::random;
   const Pass pass(scene);
   const std::uint64_t key = clray_reference::view_key({{0.0, 0.0, 1.0}, {0.0, 0.0, 1.0}});
   Sums sums(pass.plan.layout);
@@ -104,7 +103,7 @@ Scene plate(bool wide) {
   if (wide) bistatic(scene, {0, 0, 1}, toward(0.5));
   detect(scene, "spectrometer");
   scene.trace.replicates = 2;
-  scene.trace.sobol = false;
+  scene.trace.sampler = clray::SamplerKind::random;
   return scene;
 }
 
@@ -157,7 +156,7 @@ Scene grazing_gloss(double slope) {
   add(scene, wall, ashikhmin_shirley(0.5, 0.0, 10.0));
   bistatic(scene, {0, 0, 1}, {-2 * slope, 0, -1});
   scene.trace.max_bounces = 2;
-  scene.trace.sobol = false;
+  scene.trace.sampler = clray::SamplerKind::random;
   return rays(detect(scene, "spectrometer"), 16);
 }
 
@@ -216,7 +215,7 @@ Outcome drift(int log2_points) {
   Scene scene = scene_of(moved(plate_mesh(0.5, 1), {-0.25, 0, 0}), lambert(1.0));
   add(scene, moved(plate_mesh(0.5, 1), {0.25, 0, 0}), lambert(0.5));
   scene.trace.replicates = kReplicates;
-  scene.trace.sobol = false;
+  scene.trace.sampler = clray::SamplerKind::random;
   scene.trace.rays = static_cast<std::uint64_t>(kReplicates) << log2_points;
   window(scene, -1e-9, 1e-9, 3);
   const clray::Result result = run(scene);

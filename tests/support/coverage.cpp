@@ -23,6 +23,10 @@ Estimate interval(double value, double error, double width) {
   return {value, error, value - width * error, value + width * error, 0.0};
 }
 
+clray::SamplerKind sampler_of(bool sobol) {
+  return sobol ? clray::SamplerKind::strata : clray::SamplerKind::random;
+}
+
 std::string sampler_name(bool sobol) {
   return sobol ? "Sobol" : "random";
 }
@@ -150,7 +154,7 @@ std::vector<CoverageScene> coverage_scenes() {
   for (const bool sobol : {true, false}) {
     for (CoverageScene c : {delay_of_sphere(sobol), delay_of_prism(sobol), spectrometer(sobol), pressure(sobol),
                             picture("rgb", sobol), picture("hyperspectral", sobol)}) {
-      c.scene.trace.sobol = sobol;
+      c.scene.trace.sampler = sampler_of(sobol);
       scenes.push_back(std::move(c));
     }
   }
@@ -187,7 +191,7 @@ const std::array<const char*, 4> kHitsGroups = {"10 to 29 hits", "30 to 99 hits"
 ByHits cover_bins(bool sobol, int seeds) {
   ByHits groups;
   Scene scene = scene_of("sphere", {{"radius", 1.0}}, lambert(0.5));
-  scene.trace.sobol = sobol;
+  scene.trace.sampler = sampler_of(sobol);
   window(scene, -2.0 / kLightSpeed, 0.0, kBins);
   for (int log2_rays : {10, 12, 14, 16})
     for (int seed = 1; seed <= seeds; ++seed) {
@@ -261,7 +265,7 @@ ByHits simulate_bins(int seeds) {
 PixelShares cover_pixels(bool sobol) {
   constexpr int kSide = 128;
   Scene scene = scene_of("sphere", {{"radius", 1.0}}, lambert(0.5));
-  scene.trace.sobol = sobol;
+  scene.trace.sampler = sampler_of(sobol);
   detect(scene, "rgb", {{"width", 1.0 * kSide}, {"height", 1.0 * kSide}, {"samples", 128.0}});
   const clray::ImageResult image = run(scene).image.at(0);
   // Gauss's three points: relative error h⁶ of a smooth function, 10⁻¹⁰ away from the rim.

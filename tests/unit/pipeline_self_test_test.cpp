@@ -114,9 +114,15 @@ TEST_CASE("programs of every kind pass") {
   contents.push_back(everything());
   contents.back().detectors = {"delay", "pressure", "delay"};
   contents.back().specialised = false;
+  contents.push_back(simple("mesh", "lambert"));
+  contents.back().packets = true;
+  contents.push_back(everything());
+  contents.back().hinged = false;
+  contents.back().packets = true;
   for (const ProgramContent& content : contents) {
     OpenedDevice opened = opened_cpu();
     const BuiltInScene built = built_in_scene(content);
+    CHECK(in_packets(built.plan) == content.packets);
     CHECK_NOTHROW(run_traced_self_test(opened, built.plan, content.specialised, KernelFiles(embedded_kernels())));
   }
 }
@@ -140,6 +146,13 @@ TEST_CASE("a program that traces wrongly is refused") {
   ProgramContent hinged = mesh;
   hinged.hinged = true;
   check_refused(hinged, "stage/intersect.cl", "instance->moved", "0");
+  ProgramContent packets = mesh;
+  packets.packets = true;
+  check_refused(packets, "stage/packet.cl", "const double4 edge = x1 * y2 - y1 * x2",
+                "const double4 edge = x1 * y2 + y1 * x2");
+  check_refused(packets, "stage/packet.cl", "hit->weights = v3(us[k], vs[k], ws[k])",
+                "hit->weights = v3(us[k], ws[k], vs[k])");
+  check_refused(packets, "stage/packet.cl", "even_bits(part >> 1)", "even_bits(part)");
 }
 
 TEST_CASE("what passed is remembered for that device and program, with a checksum, and costs less than 5 ms") {

@@ -20,7 +20,7 @@ namespace {
 
 PassPlan beam_of(Scene scene, const Vec3& source) {
   scene.source.direction = source;
-  scene.trace.sobol = false;  // plain sampling covers the whole rectangle
+  scene.trace.sampler = clray::SamplerKind::random;  // plain sampling covers the whole rectangle
   return plan_passes(scene, build_geometry(scene)).front();
 }
 

@@ -187,7 +187,7 @@ TEST_CASE("keys: defaults are what the members start with") {
   CHECK(fallback("station", "flag_signal") == "false");
   CHECK(fallback("trace", "rays") == "none");
   CHECK(fallback("trace", "max_rays") == fmt::format("{}", TraceOptions{}.max_rays));
-  CHECK(fallback("trace", "sampler") == "\"sobol\"");
+  CHECK(fallback("trace", "sampler") == "\"strata\"");
   CHECK(fallback("motion", "period_s") == "required");
   CHECK(fallback("source", "blackbody_K") == "5772");
   CHECK(fallback("source", "direction") == "[0, 0, 1]");
@@ -249,7 +249,7 @@ TEST_CASE("keys: listings and faults by name") {
   CHECK(key_fault("trace", "max_bounces", 65) == "expected a whole number in [1..64]");
   CHECK(key_fault("delay", "bins", 0) == "expected a whole number in [1..1e7]");
   CHECK(key_fault("trace", "sampler", "sobol") == "");
-  CHECK(key_fault("trace", "sampler", "sobl") == "expected one of random, sobol; did you mean 'sobol'?");
+  CHECK(key_fault("trace", "sampler", "sobl") == "expected one of random, sobol, strata; did you mean 'sobol'?");
   CHECK_THROWS_AS(key_fault("trace", "raise", 1.0), Error);
   CHECK_THROWS_AS(scene_keys("trance"), Error);
 }

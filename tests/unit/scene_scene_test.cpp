@@ -214,7 +214,7 @@ replicates = 32
   CHECK(s.trace.time_limit_s == 60.0);
   CHECK(s.trace.max_rays == 4194304);
   CHECK(s.trace.seed == 7);
-  CHECK_FALSE(s.trace.sobol);
+  CHECK(s.trace.sampler == SamplerKind::random);
   CHECK(s.trace.replicates == 32);
 }
 

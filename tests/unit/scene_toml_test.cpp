@@ -82,7 +82,7 @@ TEST_CASE("toml: words out of a list") {
   CHECK(f.complaint("[[material]]\nname = \"a\"\nmodel = \"lambrt\"\n" + kBall).find("; did you mean 'lambert'?") !=
         std::string::npos);
   CHECK(f.complaint(kBall + "[trace]\nsampler = \"halton\"\n") ==
-        "s.toml:3:11: trace.sampler: expected one of random, sobol, found \"halton\"");
+        "s.toml:3:11: trace.sampler: expected one of random, sobol, strata, found \"halton\"");
   CHECK(f.complaint(kBall + "[observer]\ndirection = \"sun\"\n") ==
         "s.toml:3:13: observer.direction: expected one of source, station, found \"sun\"");
   CHECK(f.complaint("length_unit = \"km\"\n" + kBall) ==

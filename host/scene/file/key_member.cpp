@@ -41,9 +41,14 @@ void malformed(const RowTexts& texts, const std::string& what) {
   throw Error(ErrorCode::bug, "malformed row of keys.def: " + what, fmt::format("{}.{}", texts.section, texts.name));
 }
 
-std::string rows_of(const std::string& values) {
+std::vector<std::string> row_words(const std::string& values) {
   static const std::string start = "row of ";
-  return values.rfind(start, 0) == 0 ? values.substr(start.size()) : "";
+  std::vector<std::string> words = words_of(values);
+  if (words.empty() || words.back().rfind(start, 0) != 0) return {};
+  const std::vector<std::string>& rows = row_names(words.back().substr(start.size()));
+  words.pop_back();
+  words.insert(words.end(), rows.begin(), rows.end());
+  return words;
 }
 
 void set_choices(const std::vector<std::string>& words, KeyRow* row) {

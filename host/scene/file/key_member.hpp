@@ -31,8 +31,8 @@ KeyRow parse_texts(const RowTexts& texts);
 /// Words of a row's values: "a|b".
 std::vector<std::string> words_of(const std::string& values);
 
-/// The table whose rows' names are the values, of "row of walk"; or "".
-std::string rows_of(const std::string& values);
+/// The words of "auto|row of walk": those before the table, then the names of its rows. None if there is no table.
+std::vector<std::string> row_words(const std::string& values);
 
 void set_choices(const std::vector<std::string>& words, KeyRow* row);
 
@@ -53,10 +53,10 @@ std::string vector_text(const Vec3& v);
 template <class T>
 void set_kind(const RowTexts& texts, KeyRow* row) {
   if constexpr (std::is_same_v<T, std::string>) {
-    const std::string table = rows_of(row->values);
-    row->kind = table.empty() ? KeyKind::name : KeyKind::choice;
-    if (table.empty() && row->values != "name") malformed(texts, "a text is a name, or the row of a table");
-    if (!table.empty()) set_choices(row_names(table), row);
+    const std::vector<std::string> words = row_words(row->values);
+    row->kind = words.empty() ? KeyKind::name : KeyKind::choice;
+    if (words.empty() && row->values != "name") malformed(texts, "a text is a name, or the row of a table");
+    if (!words.empty()) set_choices(words, row);
   } else if constexpr (std::is_same_v<T, Vec3>) {
     row->kind = row->values == "direction" ? KeyKind::direction : KeyKind::vector;
     if (row->values != "direction" && row->values != "vector") malformed(texts, "expected direction or vector");
