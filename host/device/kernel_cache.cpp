@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is remembered is a file of its own: two hashes of its key (device, driver, flags, text) and a checksum of them.
-// The name is the first hash.
+// What is kept is a file of its own: two hashes of its key (device, driver, flags, text), the content, and a checksum
+// of it all. The name is the first hash.
 #include "device/kernel_cache.hpp"
 
 #include <fmt/format.h>
@@ -22,12 +22,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string key_of(const OpenedDevice& opened, const std::string& what) {
+std::string key_of(const OpenedDevice& opened, const std::string& flags, const std::string& what) {
   const char* library = getenv("POCL_KERNELLIB_NAME");  // changes PoCL's code but not its names
   const DeviceInfo& info = opened.info;
   std::string key;
-  for (const std::string& part : {info.platform, info.name, info.version, info.driver,
-                                  std::string(library ? library : ""), build_flags(opened, false), what}) {
+  for (const std::string& part :
+       {info.platform, info.name, info.version, info.driver, std::string(library ? library : ""), flags, what}) {
     key += part + "\n";
   }
   return key;
@@ -37,19 +37,24 @@ std::uint64_t hash_of(const std::string& text, std::uint64_t state = kFnvStart) 
   return fnv1a(state, text.data(), text.size());
 }
 
-/// Of what passed: the file and its text.
-struct Note {
+/// A file that is kept: where, and how it begins.
+struct Kept {
   fs::path path;
-  std::string text;
+  std::string head;
+
+  /// `kind`: "passed" or "binary".
+  Kept(const char* kind, const std::string& key) {
+    const std::uint64_t first = hash_of(key), second = hash_of(key, ~kFnvStart);
+    path = fs::path(kernel_cache_folder()) / "clray" / fmt::format("{:016x}.{}", first, kind);
+    head = fmt::format("clray {} {} {:016x} {:016x}\n", CLRAY_VERSION, kind, first, second);
+  }
+  std::string text_of(const std::string& content) const {
+    const std::string text = head + content;
+    return text + fmt::format("\n{:016x}\n", hash_of(text));
+  }
 };
 
-Note note_of(const OpenedDevice& opened, const std::string& what) {
-  const std::string key = key_of(opened, what);
-  const std::uint64_t first = hash_of(key), second = hash_of(key, ~kFnvStart);
-  const std::string hashes = fmt::format("clray {} passed {:016x} {:016x}\n", CLRAY_VERSION, first, second);
-  return {fs::path(kernel_cache_folder()) / "clray" / fmt::format("{:016x}.passed", first),
-          hashes + fmt::format("{:016x}\n", hash_of(hashes))};
-}
+constexpr std::size_t kChecksumSize = 18;  // of text_of()
 
 /// Nobody else can have written there.
 bool is_own(const fs::path& folder) {
@@ -58,28 +63,59 @@ bool is_own(const fs::path& folder) {
          (status.st_mode & (S_IWGRP | S_IWOTH)) == 0;
 }
 
+std::optional<std::string> read_kept(const Kept& kept) {
+  if (!is_own(kept.path.parent_path())) return std::nullopt;
+  std::ifstream file(kept.path, std::ios::binary);
+  const std::string text((std::istreambuf_iterator<char>(file)), {});
+  const std::size_t around = kept.head.size() + kChecksumSize;
+  if (text.size() < around) return std::nullopt;
+  std::string content = text.substr(kept.head.size(), text.size() - around);
+  if (kept.text_of(content) != text) return std::nullopt;
+  return content;
+}
+
+void write_kept(const Kept& kept, const std::string& content) {
+  std::error_code error;
+  fs::create_directories(kept.path.parent_path(), error);
+  if (error) return;
+  std::string temporary = kept.path.string() + "-XXXXXX";
+  const int file = mkstemp(temporary.data());
+  if (file < 0) return;
+  const std::string text = kept.text_of(content);
+  bool whole = true;
+  for (std::size_t at = 0; whole && at < text.size();) {
+    const ssize_t written = write(file, text.data() + at, text.size() - at);
+    whole = written > 0;
+    at += whole ? static_cast<std::size_t>(written) : 0;
+  }
+  whole = whole && fsync(file) == 0;
+  close(file);
+  if (whole) fs::rename(temporary, kept.path, error);  // so it appears whole, even if others write it as well
+  if (!whole || error) fs::remove(temporary, error);
+}
+
+Kept note_of(const OpenedDevice& opened, const std::string& what) {
+  return {"passed", key_of(opened, build_flags(opened, false), what)};
+}
+
 }  // namespace
 
 bool remembered(const OpenedDevice& opened, const std::string& what) {
-  const Note note = note_of(opened, what);
-  if (!is_own(note.path.parent_path())) return false;
-  std::ifstream file(note.path, std::ios::binary);
-  return std::string((std::istreambuf_iterator<char>(file)), {}) == note.text;
+  return read_kept(note_of(opened, what)).has_value();
 }
 
 void remember(const OpenedDevice& opened, const std::string& what) {
-  const Note note = note_of(opened, what);
-  std::error_code error;
-  fs::create_directories(note.path.parent_path(), error);
-  if (error) return;
-  std::string temporary = note.path.string() + "-XXXXXX";
-  const int file = mkstemp(temporary.data());
-  if (file < 0) return;
-  const bool whole =
-      write(file, note.text.data(), note.text.size()) == static_cast<ssize_t>(note.text.size()) && fsync(file) == 0;
-  close(file);
-  if (whole) fs::rename(temporary, note.path, error);  // so it appears whole, even if others write it as well
-  if (!whole || error) fs::remove(temporary, error);
+  write_kept(note_of(opened, what), "");
+}
+
+std::optional<std::string> kept_binary(const OpenedDevice& opened, const std::string& flags,
+                                       const std::string& source) {
+  return read_kept({"binary", key_of(opened, flags, source)});
+}
+
+void keep_binary(const OpenedDevice& opened, const std::string& flags, const std::string& source,
+                 const std::string& binary) {
+  write_kept({"binary", key_of(opened, flags, source)}, binary);
 }
 
 std::string kernel_cache_folder() {

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Builds flattened sources, each once per device and process.
+// Builds flattened sources, each once per device and process. Built programs are kept beside the kernel cache, so that
+// later processes need no compiler.
 #include "device/program.hpp"
 
 #include <fmt/format.h>
 
 #include <cstdlib>
+#include <optional>
 #include <sstream>
 
 #include "device/kernel_cache.hpp"
@@ -34,6 +36,46 @@ std::string build_log(const cl::Program& program, const cl::Device& device) {
   }
 }
 
+/// Builds a program; a failure is an Error(device) with the first lines of the log.
+void build(cl::Program* program, const OpenedDevice& opened, const std::string& entry, const std::string& flags) {
+  try {
+    program->build({opened.device}, flags.c_str());
+  } catch (const cl::Error& error) {
+    std::string log = first_lines(build_log(*program, opened.device));
+    if (log.empty()) log = "(the build log is empty)";
+    if (!kernel_cache_writable()) log += "\n" + unwritable_cache();
+    throw Error(ErrorCode::device,
+                fmt::format("{} does not build with {} ({}):\n{}", entry, flags, cl_error_name(error.err()), log),
+                opened.info.name);
+  }
+}
+
+/// The program as it was kept; none if there is none, or the driver does not take it.
+std::optional<cl::Program> program_as_kept(const OpenedDevice& opened, const std::string& flags,
+                                           const std::string& source) {
+  const std::optional<std::string> kept = kept_binary(opened, flags, source);
+  if (!kept) return std::nullopt;
+  try {
+    const std::vector<unsigned char> bytes(kept->begin(), kept->end());
+    cl::Program program(opened.context, {opened.device}, cl::Program::Binaries{bytes});
+    program.build({opened.device}, flags.c_str());
+    return program;
+  } catch (const cl::Error&) {
+    return std::nullopt;
+  }
+}
+
+/// Keeps a built program, if the driver gives it.
+void keep(const cl::Program& program, const OpenedDevice& opened, const std::string& flags, const std::string& source) {
+  try {
+    const cl::Program::Binaries binaries = program.getInfo<CL_PROGRAM_BINARIES>();
+    if (binaries.size() == 1 && !binaries[0].empty())
+      keep_binary(opened, flags, source, std::string(binaries[0].begin(), binaries[0].end()));
+  } catch (const cl::Error&) {
+    return;
+  }
+}
+
 }  // namespace
 
 std::string program_source(const OpenedDevice& opened, const std::string& entry, const ProgramOptions& options,
@@ -57,17 +99,11 @@ cl::Program build_source(OpenedDevice& opened, const std::string& entry, const s
   const auto built = opened.programs.find(key);
   if (built != opened.programs.end()) return built->second;
   return with_cl_errors(opened.info.name, [&] {
+    std::optional<cl::Program> kept = program_as_kept(opened, flags, source);
+    if (kept) return opened.programs.emplace(key, *kept).first->second;
     cl::Program program(opened.context, source);
-    try {
-      program.build({opened.device}, flags.c_str());
-    } catch (const cl::Error& error) {
-      std::string log = first_lines(build_log(program, opened.device));
-      if (log.empty()) log = "(the build log is empty)";
-      if (!kernel_cache_writable()) log += "\n" + unwritable_cache();
-      throw Error(ErrorCode::device,
-                  fmt::format("{} does not build with {} ({}):\n{}", entry, flags, cl_error_name(error.err()), log),
-                  opened.info.name);
-    }
+    build(&program, opened, entry, flags);
+    keep(program, opened, flags, source);
     opened.programs.emplace(key, program);
     return program;
   });
