@@ -1,254 +1,278 @@
 // SPDX-License-Identifier: Apache-2.0
-// Building the linear BVH: boxes to fp32 (outward) in the box frame, a binary tree by binned SAH, merged by fours.
+// Building the linear BVH: boxes to fp32 (outward) in the box frame, split by binned SAH straight into nodes of four.
+// Large ranges are tasks of a queue that several threads take; how a range is split depends on its boxes alone.
 #include "body/bvh.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <condition_variable>
+#include <cstring>
+#include <deque>
+#include <exception>
 #include <limits>
+#include <memory>
+#include <mutex>
+#include <thread>
+
+#include "body/bvh_split.hpp"
 
 namespace clray {
 namespace {
 
-constexpr int kBins = 16;
-constexpr std::uint32_t kSahDepth = 40;
-constexpr float kTraversalCost = 1.0f;  // in units of one triangle test; measured on the three spacecraft
+constexpr std::uint32_t kOwnTask = 8192;          // boxes of a range that is a task of its own
+constexpr std::size_t kPerThread = 2 * kOwnTask;  // boxes below which another thread costs more than it brings
 
-struct FloatBox {
-  float low[3] = {std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity(),
-                  std::numeric_limits<float>::infinity()};
-  float high[3] = {-std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity(),
-                   -std::numeric_limits<float>::infinity()};
-
-  void add(const FloatBox& b) {
-    for (int k = 0; k < 3; ++k) {
-      low[k] = std::min(low[k], b.low[k]);
-      high[k] = std::max(high[k], b.high[k]);
-    }
-  }
-  float half_area() const {
-    const float x = high[0] - low[0], y = high[1] - low[1], z = high[2] - low[2];
-    return x < 0.0f ? 0.0f : x * y + y * z + z * x;
-  }
-  float middle(int axis) const { return low[axis] + high[axis]; }
-};
-
-struct BinaryNode {
-  FloatBox box;
-  std::uint32_t first = 0;  // of its positions, or of its two children
-  std::uint32_t count = 0;  // 0: inner
-};
+/// The next float toward minus infinity, of numbers in [-4, 4].
+float next_below(float x) {
+  std::int32_t bits;
+  std::memcpy(&bits, &x, sizeof bits);
+  bits = x > 0.0f ? bits - 1 : x < 0.0f ? bits + 1 : std::numeric_limits<std::int32_t>::min() + 1;
+  std::memcpy(&x, &bits, sizeof x);
+  return x;
+}
 
 // Two steps outward: one for the conversion, one for the fp64 rounding of (x - centre)·scale.
 float round_down(double x) {
   const float f = static_cast<float>(x);
-  const float low = -std::numeric_limits<float>::infinity();
-  return std::nextafter(static_cast<double>(f) > x ? std::nextafter(f, low) : f, low);
+  return next_below(static_cast<double>(f) > x ? next_below(f) : f);
 }
 float round_up(double x) {
   return -round_down(-x);
 }
 
+/// A subtree: its nodes, the root first. Children that are chunks of their own have no index yet.
+struct Chunk {
+  std::vector<ClrayNode> nodes;
+  std::uint32_t stack_needed = 1, depth = 1;
+  std::unique_ptr<Chunk> child[4];
+};
+
+/// Calls function(first, end) with parts of [0, count), one on each thread.
+template <class Function>
+void in_parts(std::size_t count, unsigned threads, const Function& function) {
+  std::vector<std::thread> others;
+  const auto from = [&](unsigned k) { return count * k / threads; };
+  for (unsigned k = 1; k < threads; ++k) others.emplace_back([&, k] { function(from(k), from(k + 1)); });
+  function(0, from(1));
+  for (std::thread& thread : others) thread.join();
+}
+
 class Builder {
  public:
-  explicit Builder(const std::vector<Box>& boxes) {
+  Builder(std::size_t count, const std::function<Box(std::size_t)>& box_of, unsigned threads) : refs_(count) {
+    const std::size_t most = count / kPerThread + 1;
+    if (threads == 0) threads = std::max(1u, std::thread::hardware_concurrency());
+    threads_ = static_cast<unsigned>(std::min<std::size_t>(threads, most));
     Box all;
-    for (const Box& b : boxes) all.add(b);
+    in_parts(count, threads_, [&](std::size_t first, std::size_t end) {
+      Box own;
+      for (std::size_t i = first; i < end; ++i) own.add(box_of(i));
+      const std::lock_guard<std::mutex> lock(mutex_);
+      all.add(own);
+    });
     double half = 0.0;
     for (int k = 0; k < 3; ++k) {
       tree_.frame.centre[k] = 0.5 * all.low[k] + 0.5 * all.high[k];
       half = std::max(half, all.high[k] - tree_.frame.centre[k]);
     }
     tree_.frame.scale = half > 0.0 ? std::ldexp(1.0, -(std::ilogb(half) + 1)) : 1.0;
-    boxes_.resize(boxes.size());
-    for (std::size_t i = 0; i < boxes.size(); ++i) {
-      for (int k = 0; k < 3; ++k) {
-        boxes_[i].low[k] = round_down((boxes[i].low[k] - tree_.frame.centre[k]) * tree_.frame.scale);
-        boxes_[i].high[k] = round_up((boxes[i].high[k] - tree_.frame.centre[k]) * tree_.frame.scale);
-      }
-    }
-    tree_.order.resize(boxes.size());
-    for (std::size_t i = 0; i < boxes.size(); ++i) tree_.order[i] = static_cast<std::uint32_t>(i);
+    root_.count = static_cast<std::uint32_t>(count);
+    in_parts(count, threads_, [&](std::size_t first, std::size_t end) { set_refs(first, end, box_of); });
   }
 
   LinearBvh build() {
-    split_all();
-    tree_.nodes.emplace_back();
-    tree_.stack_needed = flatten(0, 0, 1);
+    Split root;
+    root.whole = root_;
+    auto chunk = std::make_unique<Chunk>();
+    tasks_.push_back({root, chunk.get()});
+    std::vector<std::thread> others;
+    for (unsigned k = 1; k < threads_; ++k) others.emplace_back([this] { take_tasks(); });
+    take_tasks();
+    for (std::thread& thread : others) thread.join();
+    if (failure_) std::rethrow_exception(failure_);
+    std::size_t nodes = 0;
+    count_nodes(*chunk, &nodes);
+    tree_.order.resize(refs_.size());
+    for (std::size_t i = 0; i < refs_.size(); ++i) tree_.order[i] = refs_[i].number();
+    refs_ = {};
+    tree_.nodes.reserve(nodes);
+    append(std::move(chunk), 0);
     return std::move(tree_);
   }
 
  private:
   struct Task {
-    std::uint32_t node, depth;
+    Split split;
+    Chunk* chunk;
   };
 
-  FloatBox bounds(std::uint32_t first, std::uint32_t count) const {
-    FloatBox box;
-    for (std::uint32_t i = first; i < first + count; ++i) box.add(boxes_[tree_.order[i]]);
-    return box;
+  void set_refs(std::size_t first, std::size_t end, const std::function<Box(std::size_t)>& box_of) {
+    BoxRange own;
+    for (std::size_t i = first; i < end; ++i) {
+      const Box box = box_of(i);
+      Ref& ref = refs_[i];
+      ref.low = ref.high = all_of(0.0f);
+      for (int k = 0; k < 3; ++k) {
+        ref.low[k] = round_down((box.low[k] - tree_.frame.centre[k]) * tree_.frame.scale);
+        ref.high[k] = round_up((box.high[k] - tree_.frame.centre[k]) * tree_.frame.scale);
+      }
+      ref.set_number(static_cast<std::uint32_t>(i));
+      own.box.add(ref.low, ref.high);
+      own.centres.add(ref.centre(), ref.centre());
+    }
+    const std::lock_guard<std::mutex> lock(mutex_);
+    root_.box.add(own.box);
+    root_.centres.add(own.centres);
   }
 
-  void split_all() {
-    BinaryNode root;
-    root.count = static_cast<std::uint32_t>(boxes_.size());
-    root.box = bounds(0, root.count);
-    binary_.push_back(root);
-    std::vector<Task> tasks{{0, 0}};
-    while (!tasks.empty()) {
-      const Task task = tasks.back();
-      tasks.pop_back();
-      const BinaryNode node = binary_[task.node];
-      if (node.count <= 1) continue;
-      const std::uint32_t left = task.depth < kSahDepth ? sah_split(node) : median_split(node);
-      if (left == 0) continue;
-      BinaryNode a, b;
-      a.first = node.first;
-      a.count = left;
-      b.first = node.first + left;
-      b.count = node.count - left;
-      a.box = bounds(a.first, a.count);
-      b.box = bounds(b.first, b.count);
-      const auto child = static_cast<std::uint32_t>(binary_.size());
-      binary_[task.node].first = child;
-      binary_[task.node].count = 0;
-      binary_.push_back(a);
-      binary_.push_back(b);
-      tasks.push_back({child, task.depth + 1});
-      tasks.push_back({child + 1, task.depth + 1});
+  // Takes tasks until there are none left and none that could bring more.
+  void take_tasks() {
+    std::unique_lock<std::mutex> lock(mutex_);
+    for (;;) {
+      wake_.wait(lock, [this] { return !tasks_.empty() || busy_ == 0 || failure_; });
+      if (tasks_.empty() || failure_) return;
+      Task task = std::move(tasks_.front());
+      tasks_.pop_front();
+      ++busy_;
+      lock.unlock();
+      std::vector<Task> more;
+      try {
+        run(task, &more);
+        lock.lock();
+      } catch (...) {
+        lock.lock();
+        failure_ = std::current_exception();
+      }
+      for (Task& next : more) tasks_.push_back(std::move(next));
+      --busy_;
+      wake_.notify_all();
     }
   }
 
-  // Splits by position in the middle along the longest axis of the centres; 0 for a leaf.
-  std::uint32_t median_split(const BinaryNode& node) {
-    if (node.count <= kLeafPrimitives) return 0;
-    const int axis = longest_axis(node);
-    const auto begin = tree_.order.begin() + node.first;
-    std::nth_element(begin, begin + node.count / 2, begin + node.count, [&](std::uint32_t x, std::uint32_t y) {
-      const float mx = boxes_[x].middle(axis), my = boxes_[y].middle(axis);
-      return mx < my || (mx == my && x < y);
-    });
-    return node.count / 2;
+  void run(Task& task, std::vector<Task>* more) {
+    task.chunk->nodes.emplace_back();
+    make_node(task.split, 0, 1, task.chunk, more);
   }
 
-  int longest_axis(const BinaryNode& node) const {
-    int axis = 0;
-    for (int k = 1; k < 3; ++k) {
-      if (node.box.high[k] - node.box.low[k] > node.box.high[axis] - node.box.low[axis]) axis = k;
+  // The up to four ranges that a node over a range holds: the widest is split as long as there is room.
+  std::uint32_t open(Split& split, Split children[4]) {
+    try_split(refs_.data(), &split);
+    if (split.leaf) {
+      children[0] = split;
+      return 1;
     }
-    return axis;
+    children[0].whole = split.low;
+    children[1].whole = split.high;
+    std::uint32_t count = 2;
+    while (count < 4) {
+      int widest = -1;
+      for (std::uint32_t k = 0; k < count; ++k) {
+        if (children[k].leaf || children[k].whole.count <= 1) continue;
+        if (widest < 0 || children[k].whole.box.half_area() > children[widest].whole.box.half_area())
+          widest = static_cast<int>(k);
+      }
+      if (widest < 0) break;
+      try_split(refs_.data(), &children[widest]);
+      if (children[widest].leaf) continue;
+      const Split opened = children[widest];
+      children[widest] = Split();
+      children[widest].whole = opened.low;
+      children[count++].whole = opened.high;
+    }
+    for (std::uint32_t k = 0; k < count; ++k) {
+      if (children[k].whole.count <= kLeafPrimitives) try_split(refs_.data(), &children[k]);
+    }
+    return count;
   }
 
-  std::uint32_t sah_split(const BinaryNode& node) {
-    float low[3], high[3];
-    for (int k = 0; k < 3; ++k) {
-      low[k] = std::numeric_limits<float>::infinity();
-      high[k] = -low[k];
-      for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-        const float m = boxes_[tree_.order[i]].middle(k);
-        low[k] = std::min(low[k], m);
-        high[k] = std::max(high[k], m);
-      }
-    }
-    float best = std::numeric_limits<float>::infinity();
-    int best_axis = -1, best_bin = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-      if (!(high[axis] > low[axis])) continue;
-      FloatBox box[kBins];
-      std::uint32_t count[kBins] = {};
-      for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-        const FloatBox& b = boxes_[tree_.order[i]];
-        const int bin = bin_of(b.middle(axis), low[axis], high[axis]);
-        box[bin].add(b);
-        ++count[bin];
-      }
-      float right_cost[kBins];
-      FloatBox right;
-      std::uint32_t n = 0;
-      for (int bin = kBins - 1; bin > 0; --bin) {
-        right.add(box[bin]);
-        n += count[bin];
-        right_cost[bin] = right.half_area() * static_cast<float>(n);
-      }
-      FloatBox left;
-      n = 0;
-      for (int bin = 0; bin + 1 < kBins; ++bin) {
-        left.add(box[bin]);
-        n += count[bin];
-        if (n == 0 || n == node.count) continue;
-        const float cost = left.half_area() * static_cast<float>(n) + right_cost[bin + 1];
-        if (cost < best) {
-          best = cost;
-          best_axis = axis;
-          best_bin = bin;
-        }
-      }
-    }
-    if (best_axis < 0) return median_split(node);
-    const float area = node.box.half_area();
-    const bool leaf_allowed = node.count <= kLeafPrimitives;
-    if (leaf_allowed && best + kTraversalCost * area >= area * static_cast<float>(node.count)) return 0;
-    const auto begin = tree_.order.begin() + node.first;
-    const auto middle = std::partition(begin, begin + node.count, [&](std::uint32_t i) {
-      return bin_of(boxes_[i].middle(best_axis), low[best_axis], high[best_axis]) <= best_bin;
-    });
-    return static_cast<std::uint32_t>(middle - begin);
-  }
-
-  static int bin_of(float middle, float low, float high) {
-    const int bin = static_cast<int>((middle - low) / (high - low) * static_cast<float>(kBins));
-    return std::clamp(bin, 0, kBins - 1);
-  }
-
-  // Fills wide node `at` from binary node `from`; returns the stack entries that walking it can need.
-  std::uint32_t flatten(std::uint32_t from, std::uint32_t at, std::uint32_t depth) {
-    tree_.depth = std::max(tree_.depth, depth);
-    std::vector<std::uint32_t> children{from};
-    if (binary_[from].count == 0) {
-      children = {binary_[from].first, binary_[from].first + 1};
-      while (children.size() < 4) {
-        int widest = -1;
-        for (std::size_t k = 0; k < children.size(); ++k) {
-          if (binary_[children[k]].count != 0) continue;
-          if (widest < 0 || binary_[children[k]].box.half_area() > binary_[children[widest]].box.half_area())
-            widest = static_cast<int>(k);
-        }
-        if (widest < 0) break;
-        const std::uint32_t opened = binary_[children[widest]].first;
-        children[widest] = opened;
-        children.push_back(opened + 1);
-      }
-    }
+  // Fills node `at` of a chunk, and all below it but what are tasks. Returns the stack entries that walking it can
+  // need; without those of tasks, which append() adds.
+  std::uint32_t make_node(Split& split, std::size_t at, std::uint32_t depth, Chunk* chunk, std::vector<Task>* more) {
+    chunk->depth = std::max(chunk->depth, depth);
+    Split children[4];
+    const std::uint32_t count = open(split, children);
     ClrayNode node;
-    std::uint32_t inner[4] = {};
+    std::size_t inner[4] = {};
+    const bool tasks = split.whole.count > kOwnTask;
     for (std::uint32_t k = 0; k < 4; ++k) {
-      const FloatBox box = k < children.size() ? binary_[children[k]].box : FloatBox();
+      const BoxRange& child = children[k].whole;
+      const Bounds box = k < count ? child.box : Bounds();
       for (int axis = 0; axis < 3; ++axis) {
         node.bounds[2 * axis][k] = box.low[axis];
         node.bounds[2 * axis + 1][k] = box.high[axis];
       }
       node.child[k] = CLRAY_NO_CHILD;
-      if (k >= children.size()) continue;
-      const BinaryNode& child = binary_[children[k]];
-      if (child.count != 0) {
+      if (k >= count) continue;
+      if (children[k].leaf) {
         node.child[k] = node_child(child.first, child.count);
+      } else if (tasks) {
+        chunk->child[k] = std::make_unique<Chunk>();
+        more->push_back({children[k], chunk->child[k].get()});
       } else {
-        inner[k] = static_cast<std::uint32_t>(tree_.nodes.size());
-        node.child[k] = node_child(inner[k], 0);
-        tree_.nodes.emplace_back();
+        inner[k] = chunk->nodes.size();
+        node.child[k] = node_child(static_cast<std::uint32_t>(inner[k]), 0);
+        chunk->nodes.emplace_back();
       }
     }
-    tree_.nodes[at] = node;
-    const auto count = static_cast<std::uint32_t>(children.size());
+    chunk->nodes[at] = node;
     std::uint32_t needed = count;
     for (std::uint32_t k = 0; k < count; ++k) {
-      if (inner[k] != 0) needed = std::max(needed, count - 1 + flatten(children[k], inner[k], depth + 1));
+      if (inner[k] != 0)
+        needed = std::max(needed, count - 1 + make_node(children[k], inner[k], depth + 1, chunk, more));
     }
+    if (at == 0) chunk->stack_needed = needed;
     return needed;
   }
 
-  std::vector<FloatBox> boxes_;
-  std::vector<BinaryNode> binary_;
+  static void count_nodes(const Chunk& chunk, std::size_t* nodes) {
+    *nodes += chunk.nodes.size();
+    for (const auto& child : chunk.child) {
+      if (child) count_nodes(*child, nodes);
+    }
+  }
+
+  // Appends the nodes of a chunk and of those below it; frees them. `above`: levels above the chunk. Returns the stack
+  // entries that walking it can need.
+  std::uint32_t append(std::unique_ptr<Chunk> chunk, std::uint32_t above) {
+    const auto first = static_cast<std::uint32_t>(tree_.nodes.size());
+    tree_.depth = std::max(tree_.depth, above + chunk->depth);
+    append_nodes(chunk->nodes, 0, first, &tree_.nodes);
+    chunk->nodes = {};
+    std::uint32_t needed = chunk->stack_needed, count = 0;
+    for (const std::uint32_t child : tree_.nodes[first].child) count += child != CLRAY_NO_CHILD;
+    for (const auto& child : chunk->child) count += child != nullptr;
+    for (std::uint32_t k = 0; k < 4; ++k) {
+      if (!chunk->child[k]) continue;
+      tree_.nodes[first].child[k] = node_child(static_cast<std::uint32_t>(tree_.nodes.size()), 0);
+      needed = std::max(needed, count - 1 + append(std::move(chunk->child[k]), above + 1));
+    }
+    if (above == 0) tree_.stack_needed = needed;
+    return needed;
+  }
+
+ public:
+  static void append_nodes(const std::vector<ClrayNode>& from, std::uint32_t first_leaf, std::uint32_t first_node,
+                           std::vector<ClrayNode>* to) {
+    for (ClrayNode node : from) {
+      for (std::uint32_t& child : node.child) {
+        if (child == CLRAY_NO_CHILD) continue;
+        const std::uint32_t count = child_count(child);
+        child = node_child(child_index(child) + (count != 0 ? first_leaf : first_node), count);
+      }
+      to->push_back(node);
+    }
+  }
+
+ private:
+  unsigned threads_;
+  std::vector<Ref> refs_;
+  BoxRange root_;
   LinearBvh tree_;
+  std::mutex mutex_;
+  std::condition_variable wake_;
+  std::deque<Task> tasks_;
+  unsigned busy_ = 0;
+  std::exception_ptr failure_;
 };
 
 }  // namespace
@@ -265,20 +289,21 @@ void Box::add(const Box& box) {
   add(box.high);
 }
 
-LinearBvh build_bvh(const std::vector<Box>& boxes) {
-  return Builder(boxes).build();
+LinearBvh build_bvh(std::size_t count, const std::function<Box(std::size_t)>& box_of, unsigned threads) {
+  return Builder(count, box_of, threads).build();
 }
 
-void append_tree(const LinearBvh& tree, std::uint32_t first_leaf, std::vector<ClrayNode>* nodes) {
-  const auto first_node = static_cast<std::uint32_t>(nodes->size());
-  for (ClrayNode node : tree.nodes) {
-    for (std::uint32_t& child : node.child) {
-      if (child == CLRAY_NO_CHILD) continue;
-      const std::uint32_t count = child_count(child);
-      child = node_child(child_index(child) + (count != 0 ? first_leaf : first_node), count);
-    }
-    nodes->push_back(node);
+LinearBvh build_bvh(const std::vector<Box>& boxes, unsigned threads) {
+  return build_bvh(
+      boxes.size(), [&](std::size_t i) { return boxes[i]; }, threads);
+}
+
+void append_tree(LinearBvh tree, std::uint32_t first_leaf, std::vector<ClrayNode>* nodes) {
+  if (nodes->empty() && first_leaf == 0) {
+    *nodes = std::move(tree.nodes);
+    return;
   }
+  Builder::append_nodes(tree.nodes, first_leaf, static_cast<std::uint32_t>(nodes->size()), nodes);
 }
 
 }  // namespace clray

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "shared/abi.h"
@@ -41,12 +42,15 @@ constexpr std::uint32_t kLeafPrimitives = 4;
 static_assert(kLeafPrimitives <= CLRAY_LEAF_LARGEST);
 
 /// Builds a tree over `boxes` (at least one) by binned SAH: Wald (2007), "On fast construction of SAH-based bounding
-/// volume hierarchies"; 16 bins. Below depth 40 it splits at the median, which bounds the depth at 40 + log2(n) even
-/// for coincident boxes. Chosen over Morton order because satellites mix very long and very small triangles, which
-/// Morton order groups badly; pairs of levels are then merged into nodes of four. Same boxes, same tree, on any host.
-LinearBvh build_bvh(const std::vector<Box>& boxes);
+/// volume hierarchies"; 16 bins, 8 for few boxes. Below depth 40 it splits at the median, which bounds the depth at 40
+/// + log2(n) even for coincident boxes. Chosen over Morton order because satellites mix very long and very small
+/// triangles, which Morton order groups badly; pairs of levels are merged into nodes of four. Same boxes, same tree, on
+/// any host and with any number of threads (0: those of the processor).
+LinearBvh build_bvh(const std::vector<Box>& boxes, unsigned threads = 0);
+/// The same over the boxes box_of(0) … box_of(count - 1), which are asked for twice, by several threads.
+LinearBvh build_bvh(std::size_t count, const std::function<Box(std::size_t)>& box_of, unsigned threads = 0);
 
 /// Appends a tree to *nodes, where its root then stands first; its leaves' positions count from `first_leaf`.
-void append_tree(const LinearBvh& tree, std::uint32_t first_leaf, std::vector<ClrayNode>* nodes);
+void append_tree(LinearBvh tree, std::uint32_t first_leaf, std::vector<ClrayNode>* nodes);
 
 }  // namespace clray

@@ -231,25 +231,23 @@ class Packer {
     std::vector<bool> used(table("shape").size(), false);
     for (std::uint32_t p = 0; p < g_.parts.size(); ++p) {
       std::vector<std::uint32_t> members;
-      std::vector<Box> boxes;
       for (std::uint32_t i = 0; i < raw_.size(); ++i) {
         if (raw_[i].part != p) continue;
         members.push_back(i);
-        boxes.push_back(box_of(raw_[i]));
-        g_.parts[p].box.add(boxes.back());
+        g_.parts[p].box.add(box_of(raw_[i]));
       }
       if (members.empty()) continue;
       if (!g_.trees) {
         for (const std::uint32_t member : members) append(raw_[member], member, used);
         continue;
       }
-      const LinearBvh tree = build_bvh(boxes);
+      LinearBvh tree = build_bvh(members.size(), [&](std::size_t i) { return box_of(raw_[members[i]]); });
       const auto first_primitive = static_cast<std::uint32_t>(g_.primitives.size());
       g_.parts[p].root = static_cast<std::uint32_t>(g_.nodes.size());
       g_.parts[p].frame = tree.frame;
       g_.stack_needed = std::max(g_.stack_needed, tree.stack_needed);
       for (const std::uint32_t position : tree.order) append(raw_[members[position]], members[position], used);
-      append_tree(tree, first_primitive, &g_.nodes);
+      append_tree(std::move(tree), first_primitive, &g_.nodes);
     }
     for (std::size_t row = 0; row < used.size(); ++row) {
       if (used[row]) g_.shape_rows.push_back(static_cast<int>(row));

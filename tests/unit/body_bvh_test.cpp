@@ -321,3 +321,16 @@ TEST_CASE("the tree parts what is apart, along every axis: a line opens few of t
     CHECK(opened < tree.nodes.size() / 20 * lines);
   }
 }
+
+TEST_CASE("same boxes, same tree, whatever the number of threads") {
+  // Two sizes of boxes: some tasks are far larger than others.
+  Boxes boxes = random_boxes(90000, 1.0, 1e-3, 3);
+  const Boxes small = random_boxes(30000, 1e-4, 1e-6, 4);
+  boxes.insert(boxes.end(), small.begin(), small.end());
+  const LinearBvh tree = build_bvh(boxes, 1);
+  for (const unsigned threads : {2u, 3u, 7u}) CHECK(same_nodes(tree, build_bvh(boxes, threads)));
+  const Audit audit(boxes, tree);
+  CHECK(std::count(audit.seen.begin(), audit.seen.end(), 1) == static_cast<std::ptrdiff_t>(boxes.size()));
+  CHECK(tree.depth == audit.depth);
+  CHECK(tree.stack_needed == audit.most_stack);
+}
