@@ -242,12 +242,11 @@ class Packer {
         continue;
       }
       LinearBvh tree = build_bvh(members.size(), [&](std::size_t i) { return box_of(raw_[members[i]]); });
-      const auto first_primitive = static_cast<std::uint32_t>(g_.primitives.size());
       g_.parts[p].root = static_cast<std::uint32_t>(g_.nodes.size());
       g_.parts[p].frame = tree.frame;
       g_.stack_needed = std::max(g_.stack_needed, tree.stack_needed);
       for (const std::uint32_t position : tree.order) append(raw_[members[position]], members[position], used);
-      append_tree(std::move(tree), first_primitive, &g_.nodes);
+      append_tree(std::move(tree), static_cast<std::uint32_t>(g_.primitives.size() - members.size()), &g_.nodes);
     }
     for (std::size_t row = 0; row < used.size(); ++row) {
       if (used[row]) g_.shape_rows.push_back(static_cast<int>(row));

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <map>
 #include <mutex>
 #include <set>
@@ -25,6 +26,7 @@ struct Device::Impl {
     cl::CommandQueue queue;                       ///< in order, profiling enabled
     bool int64_atomics = false;                   ///< cl_khr_int64_base_atomics, unless a quirk speaks against it
     bool no_optimiser = false;                    ///< build with -cl-opt-disable
+    std::uint64_t most_items = 1u << 26;          ///< work-items of a launch
     std::map<std::string, std::string> defines;   ///< capability defines: from extensions and quirks.def
     std::map<std::string, cl::Program> programs;  ///< programs built so far, by build options and source
     std::map<std::string, cl::Program> by_name;   ///< the same by program_name(), found without making a source

@@ -40,6 +40,7 @@ class DevicePass {
   void clear(const PassPlan& plan);
 
   std::uint64_t slice_items = 1;  ///< of the next launch
+  std::uint64_t most_items() const { return opened_.most_items; }
 
  private:
   struct Kept {

@@ -113,8 +113,8 @@ bool PassRunner::run_block(std::size_t views, std::uint32_t first_point, std::ui
         const double seconds = now() - start;
         const double factor = std::clamp(kSliceSeconds / std::max(seconds, 1e-6), 0.25, 4.0);
         if (count == device.slice_items || factor < 1.0)
-          device.slice_items =
-              std::clamp<std::uint64_t>(static_cast<std::uint64_t>(factor * count), packets ? 4 : 256, 1u << 26);
+          device.slice_items = std::clamp<std::uint64_t>(static_cast<std::uint64_t>(factor * count), packets ? 4 : 256,
+                                                         device.most_items());
         const std::lock_guard<std::mutex> lock(mutex);
         const double done = static_cast<double>(range->first + count) / static_cast<double>(source.items());
         if (!keep_going(std::min(1.0, done))) go = false;

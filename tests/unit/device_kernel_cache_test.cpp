@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is remembered beside the kernel cache: found again for equal keys only, none when damaged; and that folder when
-// it cannot be written. In a folder of its own, since it changes POCL_CACHE_DIR.
+// What is kept beside the kernel cache, memories of tests and built programs: found again for equal keys only, none
+// when damaged; and that folder when it cannot be written. In a folder of its own, since it changes POCL_CACHE_DIR.
 #include <doctest/doctest.h>
 #include <stdlib.h>
 
@@ -74,6 +74,34 @@ TEST_CASE("what others could have written is not remembered") {
   REQUIRE(remembered(opened, "a test"));
   fs::permissions(cache.folder + "/clray", fs::perms::others_write, fs::perm_options::add);
   CHECK_FALSE(remembered(opened, "a test"));
+}
+
+TEST_CASE(
+    "built programs are kept for one device, driver, flags and text; what a driver does not take is built again") {
+  OpenedDevice opened = clray::test::opened_cpu();
+  const OwnCache cache;
+  const std::string flags = build_flags(opened, false);
+  const std::string twice = "__kernel void change(__global int* x) { x[0] = 2 * x[0]; }";
+  const std::string thrice = "__kernel void change(__global int* x) { x[0] = 3 * x[0]; }";
+  const auto changed = [&](const std::string& source) {
+    opened.programs.clear();  // as in another process
+    cl::Kernel kernel = make_kernel(opened, build_source(opened, "change.cl", source, false), "change");
+    const cl::Buffer x = make_buffer(opened, std::vector<int>{21});
+    set_arguments(opened, kernel, x);
+    launch(opened, kernel, 1, 1);
+    return read_buffer<int>(opened, x, 1).front();
+  };
+  CHECK_FALSE(kept_binary(opened, flags, twice));
+  CHECK(changed(twice) == 42);
+  CHECK(changed(thrice) == 63);
+  REQUIRE(kept_binary(opened, flags, twice));
+  CHECK_FALSE(kept_binary(opened, flags + " -Werror", twice));
+  CHECK_FALSE(kept_binary(opened, flags, twice + " "));
+  CHECK(changed(twice) == 42);
+  keep_binary(opened, flags, twice, *kept_binary(opened, flags, thrice));
+  CHECK(changed(twice) == 63);  // what is kept is what runs
+  keep_binary(opened, flags, twice, "no program");
+  CHECK(changed(twice) == 42);
 }
 
 TEST_CASE("with an unwritable kernel cache the error names it, and the environment stays as it is") {
