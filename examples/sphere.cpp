@@ -2,7 +2,7 @@
 // clray as a library: a scene built by hand, traced, compared with its closed form, and written as the program writes
 // it. A Lambert sphere of radius R seen from the light's own place sends back A = 2 rho R^2 / 3 (m²/sr); the ring
 // at height z toward it, of area 2 pi R dz and cosine z/R, answers at t = -2z/c, so A(t) = rho c^3 t^2 / (4R).
-// Usage: example_sphere [DEVICE [FOLDER]], such as: example_sphere cpu sphere-result
+// Usage: sphere [DEVICE [FOLDER]], such as: sphere cpu sphere-result
 #include <cmath>
 #include <cstdio>
 
@@ -12,6 +12,7 @@
 #include "clray/result.hpp"
 #include "clray/scene.hpp"
 #include "clray/trace.hpp"
+#include "clray/write.hpp"
 
 namespace {
 
@@ -87,7 +88,7 @@ int main(int argc, char** argv) {
   try {
     return run(argc > 1 ? argv[1] : "", argc > 2 ? argv[2] : nullptr);
   } catch (const clray::Error& error) {
-    std::fprintf(stderr, "example_sphere: %s\n", error.what());
+    std::fprintf(stderr, "sphere: %s\n", error.what());
     return static_cast<int>(error.code());
   }
 }

@@ -312,7 +312,9 @@ Beams stratified(Beams beams, const Scene& scene, const Geometry& geometry, cons
   const std::uint32_t n = grid_cells(beams.views.size());
   std::vector<std::uint32_t> order;
   if (steering.bins) {
-    order = cells_by_direction(n);
+    constexpr std::uint32_t kUsual = 64;  // most beams have as many cells along an edge
+    static const std::vector<std::uint32_t> usual = cells_by_direction(kUsual);
+    order = n == kUsual ? usual : cells_by_direction(n);
   } else {
     for (std::uint32_t k = 0; k < n * n; ++k) order.push_back(k);
   }

@@ -20,6 +20,7 @@
 #include "clray/saved.hpp"
 #include "clray/session.hpp"
 #include "clray/sizes.hpp"
+#include "clray/write.hpp"
 #include "environment.hpp"
 #include "report.hpp"
 #include "signals.hpp"

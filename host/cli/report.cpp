@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "clray/write.hpp"
 #include "text/columns.hpp"
 
 namespace clray::cli {

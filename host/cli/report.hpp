@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "clray/result.hpp"
+#include "clray/write.hpp"
 
 namespace clray::cli {
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "clray/write.hpp"
 #include "io/writer.hpp"
 #include "text/text.hpp"
 

@@ -18,6 +18,7 @@
 
 #include "clray/error.hpp"
 #include "clray/result.hpp"
+#include "clray/write.hpp"
 #include "text/input_file.hpp"
 #include "text/output_file.hpp"
 #include "text/text.hpp"

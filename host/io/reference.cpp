@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "clray/error.hpp"
+#include "clray/write.hpp"
 #include "io/writer.hpp"
 #include "text/input_file.hpp"
 #include "text/text.hpp"

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "clray/error.hpp"
+#include "clray/write.hpp"
 #include "io/detector/room.hpp"
 #include "io/summary_entries.hpp"
 #include "io/writer.hpp"

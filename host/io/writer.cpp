@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "clray/error.hpp"
+#include "clray/write.hpp"
 #include "io/detector/room.hpp"
 #include "text/text.hpp"
 

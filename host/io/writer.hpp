@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "clray/result.hpp"
+#include "clray/write.hpp"
 #include "io/output_folder.hpp"
 #include "io/table_file.hpp"
 #include "text/file_names.hpp"

@@ -146,10 +146,10 @@ Estimate sum_of_parts(const Estimate& a, const Estimate& b) {
   return e;
 }
 
-double poisson_upper95(std::uint64_t hits) {
-  if (hits == 0) return 3.0;
-  if (hits > 400) return static_cast<double>(hits) + 1.6449 * std::sqrt(static_cast<double>(hits)) + 2.0;  // normal
-  // Solves P(N <= hits; mean) = 0.05 by bisection.
+namespace {
+
+/// Solves P(N <= hits; mean) = 0.05 by bisection.
+double solve_poisson_upper95(std::uint64_t hits) {
   double low = static_cast<double>(hits), high = low + 4.0 * std::sqrt(low) + 8.0;
   for (int k = 0; k < 60; ++k) {
     const double mean = 0.5 * (low + high);
@@ -158,6 +158,20 @@ double poisson_upper95(std::uint64_t hits) {
     (sum > 0.05 ? low : high) = mean;
   }
   return high;
+}
+
+}  // namespace
+
+double poisson_upper95(std::uint64_t hits) {
+  if (hits == 0) return 3.0;
+  if (hits > 400) return static_cast<double>(hits) + 1.6449 * std::sqrt(static_cast<double>(hits)) + 2.0;  // normal
+  // Each unresolved bin asks for it.
+  static const std::array<double, 64> table = [] {
+    std::array<double, 64> t{};
+    for (std::uint64_t n = 1; n < 64; ++n) t[n] = solve_poisson_upper95(n);
+    return t;
+  }();
+  return hits < 64 ? table[hits] : solve_poisson_upper95(hits);
 }
 
 }  // namespace clray

@@ -7,6 +7,7 @@
 
 #include "clray/error.hpp"
 #include "clray/result.hpp"
+#include "clray/write.hpp"
 
 namespace clray {
 namespace {

@@ -166,10 +166,34 @@ void warn_of_lost_colour(Scene* scene) {
 
 }  // namespace
 
-Scene load_scene(const std::string& path, const SceneOptions& options) {
+namespace {
+
+/// What load_scene() and parse_scene() do when the scene is read.
+Scene finished(Scene scene, bool mesh, const SceneOptions& options) {
+  apply_options(options, &scene);
+  if (mesh) light_for_pictures(options, &scene);
+  check_scene(scene);
+  warn_of_lost_colour(&scene);
+  const std::vector<std::string> more = ranging_warnings(scene);
+  scene.warnings.insert(scene.warnings.end(), more.begin(), more.end());
+  return scene;
+}
+
+void check_unit_of(const SceneOptions& options) {
   if (!(options.length_unit_m >= 0.0 && std::isfinite(options.length_unit_m))) {
     throw Error(ErrorCode::usage, "expected a positive number of metres", "--length-unit");
   }
+}
+
+}  // namespace
+
+Scene parse_scene(const std::string& text, const std::string& path, const SceneOptions& options) {
+  check_unit_of(options);
+  return finished(read_scene_text(text, path, options), false, options);
+}
+
+Scene load_scene(const std::string& path, const SceneOptions& options) {
+  check_unit_of(options);
   const std::string extension = extension_of(path);
   const bool mesh = extension == ".obj" || extension == ".ply" || extension == ".stl" || extension == ".off";
   if (!mesh && extension != ".toml") {
@@ -181,14 +205,8 @@ Scene load_scene(const std::string& path, const SceneOptions& options) {
   }
   if (const std::string fault = text::input_file_fault(path); !fault.empty())
     throw Error(ErrorCode::input, fault, path);
-  Scene scene = mesh ? bare_mesh(path, options) : read_scene_file(path, options);
-  apply_options(options, &scene);
-  if (mesh) light_for_pictures(options, &scene);
-  check_scene(scene);
-  warn_of_lost_colour(&scene);
-  const std::vector<std::string> more = ranging_warnings(scene);
-  scene.warnings.insert(scene.warnings.end(), more.begin(), more.end());
-  return scene;
+  Scene scene = mesh ? bare_mesh(path, options) : read_scene_text(text::read_input_file(path), path, options);
+  return finished(std::move(scene), mesh, options);
 }
 
 }  // namespace clray

@@ -11,7 +11,7 @@
 namespace clray {
 
 /// Reads a scene file into a scene, all of it but what the command line adds.
-Scene read_scene_file(const std::string& path, const SceneOptions& options);
+Scene read_scene_text(const std::string& text, const std::string& path, const SceneOptions& options);
 
 void read_source(TomlTable& root, Scene* scene);
 void read_observers(TomlTable& root, Scene* scene);

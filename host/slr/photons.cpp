@@ -7,6 +7,7 @@
 
 #include "clray/constants.hpp"
 #include "clray/error.hpp"
+#include "clray/write.hpp"
 #include "ephemeris/range.hpp"
 #include "pass/instants.hpp"
 #include "slr/link.hpp"

@@ -10,6 +10,7 @@
 
 #include "clray/constants.hpp"
 #include "clray/error.hpp"
+#include "clray/write.hpp"
 #include "device/shots.hpp"
 #include "pass/instants.hpp"
 #include "scene/motion.hpp"

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "clray/session.hpp"
+#include "clray/write.hpp"
 #include "ephemeris/range.hpp"
 #include "slr/gate.hpp"
 

@@ -8,6 +8,7 @@
 
 #include "clray/constants.hpp"
 #include "clray/error.hpp"
+#include "clray/write.hpp"
 #include "shared/photon.h"
 #include "slr/crd.hpp"
 #include "slr/link.hpp"

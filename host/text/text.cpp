@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "clray/result.hpp"
+#include "clray/write.hpp"
 
 namespace clray::text {
 

@@ -5,7 +5,9 @@
 #include <map>
 #include <string>
 
-namespace clray {
+#include "clray/export.hpp"
+
+namespace CLRAY_API clray {
 
 /// A detector asked for by a scene or by --detector.
 struct DetectorSpec {

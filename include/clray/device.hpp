@@ -6,7 +6,9 @@
 #include <string>
 #include <vector>
 
-namespace clray {
+#include "clray/export.hpp"
+
+namespace CLRAY_API clray {
 
 /// One OpenCL device as `clray --list devices` shows it.
 struct DeviceInfo {

@@ -6,7 +6,9 @@
 #include <stdexcept>
 #include <string>
 
-namespace clray {
+#include "clray/export.hpp"
+
+namespace CLRAY_API clray {
 
 /// What kind of thing went wrong; the value is the exit status of the command line.
 enum class ErrorCode : int {

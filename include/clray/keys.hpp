@@ -7,7 +7,9 @@
 #include <utility>
 #include <vector>
 
-namespace clray {
+#include "clray/export.hpp"
+
+namespace CLRAY_API clray {
 
 /// One key, all in words.
 struct KeyInfo {

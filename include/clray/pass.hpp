@@ -6,10 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "clray/export.hpp"
 #include "clray/result.hpp"
 #include "clray/scene.hpp"
 
-namespace clray {
+namespace CLRAY_API clray {
 
 /// Every instant of the scene's pass, traced or not; empty without a pass. Throws Error(input) for files that cannot be
 /// read or do not cover the pass, and where nothing is left to trace.

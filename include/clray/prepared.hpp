@@ -6,11 +6,12 @@
 #include <memory>
 #include <vector>
 
+#include "clray/export.hpp"
 #include "clray/result.hpp"
 #include "clray/scene.hpp"
 #include "clray/trace.hpp"
 
-namespace clray {
+namespace CLRAY_API clray {
 
 /// Keeps what a trace needs and no view changes. Every trace gives the same bits as trace() of the same scene.
 ///

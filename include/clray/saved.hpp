@@ -7,9 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "clray/export.hpp"
 #include "clray/trace.hpp"
 
-namespace clray {
+namespace CLRAY_API clray {
 
 /// One of several shares of a run, numbered from 1.
 struct Share {

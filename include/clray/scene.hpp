@@ -17,9 +17,10 @@
 
 #include "clray/constants.hpp"
 #include "clray/detector.hpp"
+#include "clray/export.hpp"
 #include "clray/trace.hpp"
 
-namespace clray {
+namespace CLRAY_API clray {
 
 using Vec3 = glm::dvec3;
 using Quaternion = glm::dquat;
@@ -323,11 +324,22 @@ struct SceneOptions {
   bool observer_at_source = false;
   std::vector<std::string> detectors;  ///< kinds; replace the file's list
   std::optional<int> bins;
+  /// Meshes in memory, by the names that components of a scene file give as `file`; no file is looked for then.
+  std::map<std::string, std::shared_ptr<const Mesh>> meshes{};
 };
 
 /// Reads a scene file (.toml) or a bare mesh (.obj .ply .stl .off).
 /// Throws Error(input) with file:line[:column], the key, and what was expected.
 Scene load_scene(const std::string& path, const SceneOptions& options = {});
+
+/// The same from the text of a scene file. `path` is where it would stand: messages name it, and files are looked for
+/// beside it.
+Scene parse_scene(const std::string& text, const std::string& path, const SceneOptions& options = {});
+
+/// A mesh in memory, of one material slot: vertices in metres, triangles counter-clockwise seen from outside. Throws
+/// Error(input) for vertices that there are not, or where all is without area.
+std::shared_ptr<const Mesh> make_mesh(std::vector<Vec3> vertices,
+                                      const std::vector<std::array<std::uint32_t, 3>>& triangles);
 
 /// Reads one mesh file; coordinates are multiplied by `length_unit_m`. Throws Error(input).
 std::shared_ptr<const Mesh> load_mesh(const std::string& path, double length_unit_m = 1.0);

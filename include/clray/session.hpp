@@ -7,9 +7,17 @@
 #include <string>
 #include <vector>
 
+#include "clray/export.hpp"
 #include "clray/result.hpp"
+#include "clray/write.hpp"
 
-namespace clray {
+namespace CLRAY_API clray {
+
+/// Shots of a laser-ranging session over the motion of `scene`, from its delay results (docs/physics.md, section 5);
+/// written by write_result() where the scene has a station and a motion.
+struct SessionSummary {
+  std::uint64_t shots = 0, signal = 0, noise = 0, none = 0;
+};
 
 /// How to run a session.
 struct SessionOptions {

@@ -2,9 +2,10 @@
 // How much memory and disk a scene's results take, before anything is traced.
 #pragma once
 
+#include "clray/export.hpp"
 #include "clray/scene.hpp"
 
-namespace clray {
+namespace CLRAY_API clray {
 
 /// Bytes, within a factor of about two; what does not grow with views, lanes, bins or pixels is left out.
 struct SceneSizes {

@@ -7,7 +7,9 @@
 #include <functional>
 #include <string>
 
-namespace clray {
+#include "clray/export.hpp"
+
+namespace CLRAY_API clray {
 
 struct Scene;
 struct Result;

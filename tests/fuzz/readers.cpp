@@ -11,6 +11,7 @@
 #include "clray/error.hpp"
 #include "clray/result.hpp"
 #include "clray/scene.hpp"
+#include "clray/write.hpp"
 #include "ephemeris/aem.hpp"
 #include "ephemeris/cpf.hpp"
 #include "ephemeris/oem.hpp"

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "clray/session.hpp"
+#include "clray/write.hpp"
 #include "support/checks.hpp"
 #include "unit/pass_support.hpp"
 

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "clray/error.hpp"
+#include "clray/write.hpp"
 #include "io/output_folder.hpp"
 #include "unit/io_support.hpp"
 

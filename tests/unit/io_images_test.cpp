@@ -10,6 +10,7 @@
 #include <fitsio.h>
 #include <png.h>
 
+#include "clray/write.hpp"
 #include "io/colour.hpp"
 #include "unit/io_support.hpp"
 

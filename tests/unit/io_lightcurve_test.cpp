@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "clray/write.hpp"
 #include "unit/io_support.hpp"
 
 using namespace clray;

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "clray/write.hpp"
 #include "unit/io_support.hpp"
 
 using namespace clray;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "clray/write.hpp"
 #include "unit/io_support.hpp"
 
 using namespace clray;

@@ -12,6 +12,7 @@
 #include <sstream>
 
 #include "clray/error.hpp"
+#include "clray/write.hpp"
 #include "text/text.hpp"
 #include "unit/io_support.hpp"
 

@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "clray/error.hpp"
+#include "clray/write.hpp"
 #include "slr/crd.hpp"
 #include "slr/session.hpp"
 

@@ -15,6 +15,7 @@
 #include "clray/constants.hpp"
 #include "clray/error.hpp"
 #include "clray/session.hpp"
+#include "clray/write.hpp"
 #include "shared/photon.h"
 #include "slr/crd.hpp"
 #include "slr/link.hpp"

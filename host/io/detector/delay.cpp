@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "clray/constants.hpp"
+#include "clray/write.hpp"
 #include "io/detector/delay_pictures.hpp"
 #include "io/detector/room.hpp"
 #include "io/detector/words.hpp"

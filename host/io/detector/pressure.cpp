@@ -10,6 +10,7 @@
 #include <map>
 
 #include "clray/constants.hpp"
+#include "clray/write.hpp"
 #include "io/detector/room.hpp"
 #include "io/detector/words.hpp"
 #include "io/netcdf/records.hpp"

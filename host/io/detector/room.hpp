@@ -3,6 +3,7 @@
 // said of it, and its name in rooms.cpp.
 #pragma once
 
+#include "clray/write.hpp"
 #include "io/writer.hpp"
 
 namespace clray::io {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The kinds of records, and what is asked of all of them; see room.hpp.
+#include "clray/write.hpp"
 #include "io/detector/room.hpp"
 
 namespace clray::io {

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "clray/constants.hpp"
+#include "clray/write.hpp"
 #include "io/detector/lightcurve.hpp"
 #include "io/detector/room.hpp"
 #include "io/detector/words.hpp"

@@ -2,6 +2,7 @@
 // Sums that are results by themselves, in files and on the terminal: a detector whose row states them needs no more.
 #include <algorithm>
 
+#include "clray/write.hpp"
 #include "io/detector/room.hpp"
 #include "io/detector/words.hpp"
 #include "io/summary_entries.hpp"

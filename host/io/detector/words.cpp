@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "clray/write.hpp"
 #include "text/text.hpp"
 
 namespace clray::io {

@@ -163,9 +163,10 @@ HitSizes hit_sizes(const RoomResults& x, std::size_t v, std::size_t l, std::size
 /// A bin: what is solved, and what rays found beside it.
 void add_bin(const RoomResults& x, double solved, const BinSample& s, const HitSizes& hit, DelayResult* out) {
   const std::uint32_t replicates = x.plan.request.replicates;
-  const double value = s.mean + solved, most = poisson_upper95(s.hits);
+  const double value = s.mean + solved;
   double error = s.spread;
   bool resolved = x.plan.request.exact() || (s.hits >= 10 && 2 * s.replicates_hit >= replicates);
+  const double most = resolved ? 0.0 : poisson_upper95(s.hits);
   if (!resolved && x.read.adds_to(x.detector.first_block + kBins)) {
     // Few hits show no error to be trusted. At 95 % no more than `most` were due, each of the mean size. A bin that is
     // known as well as ten hits know it, since most of it is solved, is resolved.

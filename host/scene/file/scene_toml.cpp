@@ -130,7 +130,15 @@ void read_shape(TomlTable& t, Component* c) {
 /// Meshes by their canonical path, so that components that name one file share it.
 using MeshCache = std::map<std::string, std::shared_ptr<const Mesh>>;
 
-void read_mesh(TomlTable& t, double unit_m, MeshCache* cache, Scene* scene, Component* c) {
+void read_mesh(TomlTable& t, double unit_m, const SceneOptions& options, MeshCache* cache, Scene* scene, Component* c) {
+  if (!options.meshes.empty()) {
+    const auto in_memory = options.meshes.find(t.text("file"));
+    if (in_memory != options.meshes.end()) {
+      if (in_memory->second == nullptr) t.fail("file", "is no mesh, but null");
+      c->mesh = in_memory->second;
+      return;
+    }
+  }
   const std::string file = t.file("file");
   std::shared_ptr<const Mesh>& mesh = (*cache)[fs::weakly_canonical(file).string()];
   if (!mesh) {
@@ -202,7 +210,8 @@ void read_variants(TomlTable& root, Scene* scene, const MaterialBook& book) {
 }
 
 /// [[component]] tables: shapes, meshes (shared by file), transforms, hinges, materials.
-void read_components(TomlTable& root, double length_unit_m, Scene* scene, MaterialBook* book) {
+void read_components(TomlTable& root, const SceneOptions& options, double length_unit_m, Scene* scene,
+                     MaterialBook* book) {
   MeshCache cache;
   ComponentNames names;
   for (TomlTable& t : root.tables("component")) {
@@ -214,7 +223,7 @@ void read_components(TomlTable& root, double length_unit_m, Scene* scene, Materi
     t.know({"material"});
     if (table_row("shape", c.shape).file) {
       t.know({"file", "materials"});
-      read_mesh(t, length_unit_m, &cache, scene, &c);
+      read_mesh(t, length_unit_m, options, &cache, scene, &c);
     }
     read_component_materials(t, scene, book, &c);
     t.finish();
@@ -230,8 +239,8 @@ void read_components(TomlTable& root, double length_unit_m, Scene* scene, Materi
 
 }  // namespace
 
-Scene read_scene_file(const std::string& path, const SceneOptions& options) {
-  const toml::table parsed = parse_toml(path);
+Scene read_scene_text(const std::string& text, const std::string& path, const SceneOptions& options) {
+  const toml::table parsed = parse_toml(text, path);
   TomlTable root(parsed, "", path);
   root.know({"length_unit", "reference_point", "material", "component", "variant", "source", "observer", "motion",
              "pass", "station", "detector", "trace"});
@@ -243,7 +252,7 @@ Scene read_scene_file(const std::string& path, const SceneOptions& options) {
   root.finish();
   MaterialBook book(&scene);
   read_materials(root, &book);
-  read_components(root, options.length_unit_m > 0.0 ? options.length_unit_m : unit_m, &scene, &book);
+  read_components(root, options, options.length_unit_m > 0.0 ? options.length_unit_m : unit_m, &scene, &book);
   read_variants(root, &scene, book);
   read_detectors(root, &scene);
   read_pass(root, &scene);

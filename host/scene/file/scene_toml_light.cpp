@@ -10,6 +10,7 @@
 #include "scene/motion.hpp"
 #include "scene/scene_parts.hpp"
 #include "scene/spectrum.hpp"
+#include "text/input_file.hpp"
 
 namespace clray {
 
@@ -78,7 +79,7 @@ void read_motion(TomlTable& root, Scene* scene) {
 }
 
 Station load_station(const std::string& path) {
-  const toml::table parsed = parse_toml(path);
+  const toml::table parsed = parse_toml(text::read_input_file(path), path);
   TomlTable t(parsed, "station", path);
   if (t.has("file")) t.fail("file", "is a key of scenes; a station file names no other");
   Station s;

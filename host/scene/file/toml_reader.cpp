@@ -28,8 +28,7 @@ bool before(const toml::source_region& a, const toml::source_region& b) {
 
 }  // namespace
 
-toml::table parse_toml(const std::string& path) {
-  const std::string text = text::read_input_file(path);
+toml::table parse_toml(const std::string& text, const std::string& path) {
   if (const TextPlace deep = deep_key(text); deep.line > 0) {
     throw Error(ErrorCode::input,
                 fmt::format("a key of more than {} parts; at most that many were expected", kMostKeyParts),

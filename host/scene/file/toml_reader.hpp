@@ -97,7 +97,7 @@ class TomlTable {
 };
 
 /// A TOML file. Throws Error(input) with file:line:column.
-toml::table parse_toml(const std::string& path);
+toml::table parse_toml(const std::string& text, const std::string& path);
 
 /// What stands there, for messages: `"green"`, `true`, `1.5`, `a table`.
 std::string found(const toml::node& node);

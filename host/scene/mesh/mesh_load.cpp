@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // load_mesh(): picks the reader by extension, scales to metres, triangulates, measures, and counts edges from the
 // file's own indices. Every face of the file that has an area stays in the Mesh, in its order.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -139,14 +141,8 @@ void measure(Mesh& mesh) {
   mesh.report.triangles = mesh.triangles.size();
 }
 
-}  // namespace
-
-std::shared_ptr<const Mesh> load_mesh(const std::string& path, double length_unit_m) {
-  if (!(length_unit_m > 0.0 && std::isfinite(length_unit_m))) {
-    fail_input(path, 0,
-               "a length unit of " + std::to_string(length_unit_m) + " m; a finite number above 0 was expected");
-  }
-  PolygonSoup soup = read_soup(path);
+/// Polygons in metres as a mesh: triangles, edges and areas counted.
+std::shared_ptr<const Mesh> mesh_of(PolygonSoup soup, double length_unit_m, const std::string& path) {
   auto mesh = std::make_shared<Mesh>();
   mesh->vertices = std::move(soup.vertices);
   mesh->material_slots = std::move(soup.slots);
@@ -160,6 +156,37 @@ std::shared_ptr<const Mesh> load_mesh(const std::string& path, double length_uni
   measure(*mesh);
   if (!(mesh->report.area_m2 > 0.0)) fail_input(path, 0, "all faces are without area; a surface was expected");
   return mesh;
+}
+
+}  // namespace
+
+std::shared_ptr<const Mesh> make_mesh(std::vector<Vec3> vertices,
+                                      const std::vector<std::array<std::uint32_t, 3>>& triangles) {
+  const std::string place = "mesh in memory";
+  if (triangles.empty()) fail_input(place, 0, "no faces; at least one of three corners was expected");
+  if (vertices.size() > kMaxVertices) fail_input(place, 0, "more than 2^31 vertices; fewer were expected");
+  PolygonSoup soup;
+  soup.slots = {""};
+  soup.corners.reserve(3 * triangles.size());
+  for (const auto& triangle : triangles) {
+    const std::size_t start = soup.corners.size();
+    for (const std::uint32_t vertex : triangle) {
+      if (vertex >= vertices.size())
+        fail_input(place, 0, fmt::format("a triangle has vertex {}; there are {}", vertex, vertices.size()));
+      soup.corners.push_back(vertex);
+    }
+    soup.end_face(start, place, 0);
+  }
+  soup.vertices = std::move(vertices);
+  return mesh_of(std::move(soup), 1.0, place);
+}
+
+std::shared_ptr<const Mesh> load_mesh(const std::string& path, double length_unit_m) {
+  if (!(length_unit_m > 0.0 && std::isfinite(length_unit_m))) {
+    fail_input(path, 0,
+               "a length unit of " + std::to_string(length_unit_m) + " m; a finite number above 0 was expected");
+  }
+  return mesh_of(read_soup(path), length_unit_m, path);
 }
 
 }  // namespace clray

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// What detectors find whose sums are results by themselves.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "clray/export.hpp"
+#include "clray/result/estimate.hpp"
+
+namespace CLRAY_API clray {
+
+/// The numbers of a sum that a detector's row states with a unit, each with its error.
+struct TableResult {
+  ResultKey key;
+  std::string name;  ///< of the sum
+  std::string unit;
+  std::vector<Estimate> values;
+};
+
+}  // namespace clray
