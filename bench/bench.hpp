@@ -29,7 +29,7 @@ int sweep(const Options& options);       ///< cost of orientations
 int end(const Options& options);         ///< time to given errors, against a tracer on Embree
 int method(const Options& options);      ///< whether auto takes the quickest method
 int shots(const Options& options);       ///< first-photon shots per second
-int rays(const Options& options);        ///< speed of beams, shadow rays and bounces by walk, against Embree
+int ray_speed(const Options& options);   ///< speed of beams, shadow rays and bounces by walk, against Embree
 
 /// Whether `name` is asked for.
 bool wanted(const Options& options, const std::string& name);

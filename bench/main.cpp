@@ -47,7 +47,7 @@ int main(int argc, char** argv) {
   end->add_option("--device", options.devices, "as for clray (default: that of CLRAY_TEST_DEVICE, else cpu)")
       ->expected(1);
   add("shots", "first-photon shots per second", clray_bench::shots);
-  CLI::App* rays = add("rays", "speed of rays by walk, against a tracer on Embree", clray_bench::rays);
+  CLI::App* rays = add("rays", "speed of rays by walk, against a tracer on Embree", clray_bench::ray_speed);
   rays->add_option("--mesh", options.meshes, "a mesh as a further body; repeatable")->check(CLI::ExistingFile);
   CLI11_PARSE(app, argc, argv);
   try {

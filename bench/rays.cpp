@@ -135,7 +135,7 @@ std::vector<std::string> tree_row(const std::string& body, const MeshPtr& mesh) 
 
 }  // namespace
 
-int rays(const Options& options) {
+int ray_speed(const Options& options) {
   std::vector<std::vector<std::string>> rows = {
       {"body", "paths", "by", "paths in all", "million paths/s", "times plain", "rays per path", "hits"}};
   std::vector<std::vector<std::string>> trees = {
