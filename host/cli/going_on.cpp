@@ -13,8 +13,16 @@ namespace {
 
 constexpr const char* kBreak = "\n";  // between the commands of a note: none is a word of a command
 
-/// The arguments of a saved run: those of its commands, one over the other. Its files are found from the folder where
-/// it was started.
+/// A file of a saved run: from the folder where it was started, or, on another machine, by the same name from here.
+/// That it is the same scene is checked by its numbers.
+std::string found_again(const std::string& path, const std::filesystem::path& folder) {
+  const std::filesystem::path there = folder / path, here = std::filesystem::path(path).is_absolute()
+                                                                ? std::filesystem::path(path).filename()
+                                                                : std::filesystem::path(path);
+  return (!std::filesystem::exists(there) && std::filesystem::exists(here) ? here : there).string();
+}
+
+/// The arguments of a saved run: those of its commands, one over the other.
 Arguments saved_arguments(const std::string& file, const SavedRun& saved) {
   if (saved.note.empty()) throw Error(ErrorCode::input, "these sums do not say what was run", file);
   Arguments a;
@@ -25,7 +33,7 @@ Arguments saved_arguments(const std::string& file, const SavedRun& saved) {
   }
   const std::filesystem::path folder = saved.note.front();
   for (std::string* path : {&a.scene, &a.reference}) {
-    if (!path->empty()) *path = (folder / *path).string();
+    if (!path->empty()) *path = found_again(*path, folder);
   }
   a.resume.clear();
   a.note = saved.note;

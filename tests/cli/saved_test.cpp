@@ -113,6 +113,16 @@ TEST_CASE("shares are merged to the digest of one run, which verify confirms") {
   CHECK(verified.status == 0);
   CHECK(contains(verified.out, "the same: 2 of 16 ranges were computed again"));
   REQUIRE(clray(scratch, {"verify", "parts/2"}).status == 0);
+  // On another machine the scene stands elsewhere.
+  const Scratch other;
+  std::filesystem::rename(scratch / "parts", other / "parts");
+  std::filesystem::rename(scratch / "square.obj", other / "square.obj");
+  const auto moved = clray(other, {"merge", "parts/1", "parts/2", "parts/3", "--out", "all"});
+  CAPTURE(moved.err);
+  REQUIRE(moved.status == 0);
+  CHECK(digest(other, "all") == digest(scratch, "whole"));
+  spit(other / "square.obj", "v 0 0 0\nv 1 0 0\nv 1 2 0\nf 1 2 3\n");
+  CHECK(clray(other, {"merge", "parts/1", "parts/2", "parts/3", "--out", "else"}).status == 2);
 }
 
 TEST_CASE("what is no file of sums is neither replaced nor read") {
