@@ -200,27 +200,48 @@ void set_material(Scene& scene, const std::string& name, const std::string& key,
   throw clray::Error(clray::ErrorCode::usage, "there is no material of this name", name);
 }
 
-const std::map<std::string, clray::Method>& methods() {
-  static const std::map<std::string, clray::Method> all{{"auto", clray::Method::automatic},
-                                                        {"exact", clray::Method::exact},
-                                                        {"tiles", clray::Method::tiles},
-                                                        {"points", clray::Method::points}};
-  return all;
-}
+/// An option that is one of several words.
+template <class Value>
+struct Words {
+  const char* key;
+  Value clray::TraceOptions::*option;
+  std::vector<std::pair<const char*, Value>> values;
 
-void set_method(clray::TraceOptions& options, const std::string& name) {
-  const auto found = methods().find(name);
-  if (found == methods().end())
-    throw clray::Error(clray::ErrorCode::usage, "expected auto, exact, tiles or points", "method");
-  options.method = found->second;
-}
-
-std::string method_of(const clray::TraceOptions& options) {
-  for (const auto& [name, method] : methods()) {
-    if (method == options.method) return name;
+  std::string get(const clray::TraceOptions& options) const {
+    for (const auto& [word, value] : values) {
+      if (options.*option == value) return word;
+    }
+    return "";
   }
-  return "";
-}
+  void set(clray::TraceOptions& options, const std::string& wanted) const {
+    std::string all;
+    for (const auto& [word, value] : values) {
+      if (word == wanted) {
+        options.*option = value;
+        return;
+      }
+      all += (all.empty() ? "" : ", ") + std::string(word);
+    }
+    throw clray::Error(clray::ErrorCode::usage, "expected one of " + all, key);
+  }
+  void bind(nb::class_<clray::TraceOptions>* options) const {
+    options->def_prop_rw(
+        key, [words = *this](const clray::TraceOptions& o) { return words.get(o); },
+        [words = *this](clray::TraceOptions& o, const std::string& wanted) { words.set(o, wanted); });
+  }
+};
+
+const Words<clray::Method> kMethods = {"method",
+                                       &clray::TraceOptions::method,
+                                       {{"auto", clray::Method::automatic},
+                                        {"exact", clray::Method::exact},
+                                        {"tiles", clray::Method::tiles},
+                                        {"points", clray::Method::points}}};
+const Words<clray::SamplerKind> kSamplers = {"sampler",
+                                             &clray::TraceOptions::sampler,
+                                             {{"random", clray::SamplerKind::random},
+                                              {"sobol", clray::SamplerKind::sobol},
+                                              {"strata", clray::SamplerKind::strata}}};
 
 void bind_scene(nb::module_& m) {
   nb::class_<clray::Mesh>(m, "Mesh", "A triangle mesh in metres.")
@@ -231,17 +252,16 @@ void bind_scene(nb::module_& m) {
   m.def("load_mesh", &clray::load_mesh, "path"_a, "length_unit_m"_a = 1.0);
 
   using Options = clray::TraceOptions;
-  nb::class_<Options>(m, "TraceOptions", "When to stop and how to sample: the keys of [trace].")
-      .def_prop_rw("method", &method_of, &set_method)
-      .def_rw("max_bounces", &Options::max_bounces)
+  nb::class_<Options> options(m, "TraceOptions", "When to stop and how to sample: the keys of [trace].");
+  kMethods.bind(&options);
+  kSamplers.bind(&options);
+  options.def_rw("max_bounces", &Options::max_bounces)
       .def_rw("rays", &Options::rays)
       .def_rw("target_error_percent", &Options::target_error_percent)
       .def_rw("time_limit_s", &Options::time_limit_s)
       .def_rw("max_rays", &Options::max_rays)
       .def_rw("seed", &Options::seed)
       .def_rw("replicates", &Options::replicates)
-      .def_rw("sobol", &Options::sobol)
-      .def_rw("stratify", &Options::stratify)
       .def_rw("walk", &Options::walk);
 
   nb::class_<Scene>(m, "Scene", "What is traced: body, surfaces, light, observers, detectors, options.")

@@ -244,3 +244,12 @@ def test_the_import_is_quick():
     best = min(float(subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True).stdout)
                for _ in range(3))
     assert best < 0.3
+
+
+def test_options_that_are_words():
+    scene = plate_scene()
+    assert (scene.trace.method, scene.trace.sampler) == ("auto", "strata")
+    scene.trace.method, scene.trace.sampler = "points", "random"
+    assert (scene.trace.method, scene.trace.sampler) == ("points", "random")
+    with pytest.raises(clray.Error, match="sampler: expected one of random, sobol, strata"):
+        scene.trace.sampler = "halton"
