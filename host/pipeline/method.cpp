@@ -19,7 +19,7 @@ namespace {
 // Seconds on one core, as bodies of 36 to 10^6 faces took (clray-bench method). Their ratios decide.
 constexpr double kSecondsPerFace = 8e-6;                               // of a view that is solved
 constexpr double kSecondsPerCutFace = 5e-6, kSecondsPerTile = 5e-6;    // of a view in tiles
-constexpr double kSecondsPerTreeFace = 2.5e-6;                         // of the tree that rays need
+constexpr double kSecondsPerTreeFace = 2e-6;                           // of the tree that rays need
 constexpr double kSecondsPerRay = 0.1e-6, kSecondsPerLevel = 0.06e-6;  // and of each level of that tree
 constexpr double kTilesOfPercent = 1000.0, kRaysOfPercent = 3000.0;    // that reach 1 %
 constexpr double kTilesPower = 1.5, kRaysPower = 0.75;                 // with which errors fall (docs/error.md)
