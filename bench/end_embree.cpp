@@ -9,35 +9,26 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <thread>
 
+#include "embree_body.hpp"
 #include "support/scenes.hpp"
 
-#if CLRAY_EMBREE >= 4
-#include <embree4/rtcore.h>
-#else
-#include <embree3/rtcore.h>
-#endif
 #ifdef __SSE__
 #include <xmmintrin.h>
 #endif
 
 namespace clray_bench {
 
+using clray::now;
 using clray::Vec3;
 
 namespace {
 
-constexpr int kLanes = 16;
-constexpr std::uint32_t kChunk = 256;             // packets that a thread takes at a time
 constexpr std::uint32_t kPacketsPerThread = 512;  // below which another thread costs more than it brings
-
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 double dot(const Vec3& a, const Vec3& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
@@ -53,13 +44,6 @@ inline std::uint32_t hashed(std::uint32_t x) {
 /// From 0 to 1, 1 excluded.
 inline float unit(std::uint32_t bits) {
   return static_cast<float>(static_cast<std::int32_t>(bits >> 8)) * 0x1p-24f;
-}
-
-struct Floats {
-  float x, y, z;
-};
-Floats floats(const Vec3& v) {
-  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
 /// Which points are traced: a grid of columns x rows cells with one point each, in blocks of 4 x 4, or random points.
@@ -78,23 +62,7 @@ class Tracer {
     const Vec3 s = which.scene.source.direction;
     find_beam(mesh, s);
     const double start = now();
-    device_ = rtcNewDevice(nullptr);
-    scene_ = rtcNewScene(device_);
-    rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_HIGH);
-    const RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* corners = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                                3 * sizeof(float), mesh.vertices.size()));
-    for (std::size_t k = 0; k < mesh.vertices.size(); ++k) {
-      const Floats p = floats(mesh.vertices[k]);
-      corners[3 * k] = p.x, corners[3 * k + 1] = p.y, corners[3 * k + 2] = p.z;
-    }
-    auto* faces = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), mesh.triangles.size()));
-    for (std::size_t k = 0; k < mesh.triangles.size(); ++k) std::copy_n(mesh.triangles[k].begin(), 3, faces + 3 * k);
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(scene_, geometry);
-    rtcReleaseGeometry(geometry);
-    rtcCommitScene(scene_);
+    body_.emplace(mesh, RTC_BUILD_QUALITY_HIGH, false);
     build_s_ = now() - start;
     weights_.reserve(mesh.triangles.size());
     for (const auto& t : mesh.triangles) {
@@ -105,12 +73,6 @@ class Tracer {
           static_cast<float>(length > 0.0 ? rho / clray_test::kPi * std::fabs(dot(n, s)) / length : 0.0));
     }
   }
-  ~Tracer() {
-    rtcReleaseScene(scene_);
-    rtcReleaseDevice(device_);
-  }
-  Tracer(const Tracer&) = delete;
-  Tracer& operator=(const Tracer&) = delete;
 
   Answer pulse(bool grid, int log2_rays, std::uint64_t seed, const Window& window) const {
     const double start = now();
@@ -290,17 +252,16 @@ class Tracer {
     RTCIntersectArguments arguments;
     rtcInitIntersectArguments(&arguments);
     arguments.flags = coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
-    rtcIntersect16(kAll, scene_, packet, &arguments);
+    rtcIntersect16(kAll, body_->scene(), packet, &arguments);
 #else
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     context.flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
-    rtcIntersect16(kAll, scene_, &context, packet);
+    rtcIntersect16(kAll, body_->scene(), &context, packet);
 #endif
   }
 
-  RTCDevice device_ = nullptr;
-  RTCScene scene_ = nullptr;
+  std::optional<EmbreeBody> body_;
   double build_s_ = 0.0;
   double start_depth_ = 0.0, width_ = 0.0, height_ = 0.0, area_ = 0.0;
   Floats corner_{}, edge_u_{}, edge_v_{}, down_{};

@@ -4,14 +4,13 @@
 #include "rays.hpp"
 
 #if defined(CLRAY_EMBREE) && CLRAY_EMBREE == 3
-#include <embree3/rtcore.h>
-
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <thread>
+
+#include "embree_body.hpp"
 
 #ifdef __SSE__
 #include <xmmintrin.h>
@@ -19,22 +18,14 @@
 
 namespace clray_bench {
 
+using clray::now;
 using clray::Vec3;
 
 namespace {
 
-constexpr int kLanes = 16;
-constexpr std::uint32_t kChunk = 256;  // packets that a thread takes at a time
 constexpr int kBounces = 4;
 constexpr float kSurvival[kBounces] = {1.0f, 1.0f, 0.125f, 0.5f};  // of roulette, for albedo 0.5
 
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-struct Floats {
-  float x, y, z;
-};
 Floats operator+(Floats a, Floats b) {
   return {a.x + b.x, a.y + b.y, a.z + b.z};
 }
@@ -49,9 +40,6 @@ Floats cross(Floats a, Floats b) {
 }
 Floats unit(Floats a) {
   return (1.0f / std::sqrt(dot(a, a))) * a;
-}
-Floats floats(const Vec3& v) {
-  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
 /// Random numbers by a hash of a counter (Wellons 2018, "lowbias32").
@@ -68,33 +56,13 @@ struct Random {
 class Tracer : public PathRival {
  public:
   Tracer(const clray::Mesh& mesh, const PathViews& views, bool robust, unsigned threads)
-      : light_(floats(views.light)), observer_(floats(views.observer)), threads_(threads) {
+      : light_(floats(views.light)),
+        observer_(floats(views.observer)),
+        threads_(threads),
+        body_(mesh, RTC_BUILD_QUALITY_MEDIUM, robust) {
     find_beam(mesh);
-    device_ = rtcNewDevice(nullptr);
-    scene_ = rtcNewScene(device_);
-    if (robust) rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
-    const RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* corners = static_cast<Floats*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                                 sizeof(Floats), mesh.vertices.size()));
-    std::transform(mesh.vertices.begin(), mesh.vertices.end(), corners, floats);
-    auto* faces = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), mesh.triangles.size()));
-    for (std::size_t k = 0; k < mesh.triangles.size(); ++k) std::copy_n(mesh.triangles[k].begin(), 3, faces + 3 * k);
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(scene_, geometry);
-    rtcReleaseGeometry(geometry);
-    const double begin = now();
-    rtcCommitScene(scene_);
-    build_s_ = now() - begin;
   }
-  ~Tracer() override {
-    rtcReleaseScene(scene_);
-    rtcReleaseDevice(device_);
-  }
-  Tracer(const Tracer&) = delete;
-  Tracer& operator=(const Tracer&) = delete;
-
-  double build_s() const override { return build_s_; }
+  double build_s() const override { return body_.commit_s(); }
 
   PathRun run(PathKind kind, bool single, int log2_paths) const override {
     const auto side = static_cast<std::uint32_t>(std::lround(std::sqrt(std::ldexp(1.0, log2_paths) / kLanes)));
@@ -168,7 +136,7 @@ class Tracer : public PathRival {
       r.hit.geomID[k] = r.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
     }
     RTCIntersectContext context = context_of(true);
-    rtcIntersect16(valid, scene_, &context, &r);
+    rtcIntersect16(valid, body_.scene(), &context, &r);
     run->rays += kLanes;
     int shadows = 0;
     for (int k = 0; k < kLanes; ++k) {
@@ -187,7 +155,7 @@ class Tracer : public PathRival {
       r.ray.tfar[k] = std::numeric_limits<float>::infinity();
     }
     if (shadows == 0) return;
-    rtcOccluded16(valid, scene_, &context, &r.ray);
+    rtcOccluded16(valid, body_.scene(), &context, &r.ray);
     run->rays += static_cast<std::uint64_t>(shadows);
   }
 
@@ -213,7 +181,7 @@ class Tracer : public PathRival {
       RTCRayHit r;
       r.ray = ray_of(o, d);
       r.hit.geomID = r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-      rtcIntersect1(scene_, &context, &r);
+      rtcIntersect1(body_.scene(), &context, &r);
       ++run->rays;
       if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID) return;
       run->hits += bounce == 0;
@@ -222,7 +190,7 @@ class Tracer : public PathRival {
       o = o + r.ray.tfar * d + reach_ * n;
       if ((kind == PathKind::bistatic || bounce > 0) && dot(n, observer) > 0.0f) {
         RTCRay shadow = ray_of(o, observer);
-        rtcOccluded1(scene_, &context, &shadow);
+        rtcOccluded1(body_.scene(), &context, &shadow);
         ++run->rays;
       }
       if (kind == PathKind::bistatic || random->next() >= kSurvival[bounce]) return;
@@ -235,9 +203,7 @@ class Tracer : public PathRival {
   Floats light_, observer_, corner_{}, edge_u_{}, edge_v_{};
   float reach_ = 0.0f;  // how far from a surface rays leave it
   unsigned threads_;
-  double build_s_ = 0.0;
-  RTCDevice device_ = nullptr;
-  RTCScene scene_ = nullptr;
+  EmbreeBody body_;
 };
 
 }  // namespace
