@@ -40,10 +40,11 @@ struct Device::Impl {
       passed.insert(name);
     }
   };
-  std::vector<Opened> devices;        ///< never empty
-  std::vector<std::string> notes;     ///< devices that were left out, each a sentence
-  std::mutex busy;                    ///< held by a DeviceUse
-  std::atomic<std::thread::id> user;  ///< the thread of that DeviceUse; none: thread::id()
+  std::vector<Opened> devices;                        ///< never empty
+  std::vector<std::string> notes;                     ///< devices that were left out, each a sentence
+  std::mutex busy;                                    ///< held by a DeviceUse
+  std::atomic<std::thread::id> user;                  ///< the thread of that DeviceUse; none: thread::id()
+  std::map<std::string, int> runs_without_optimiser;  ///< of each program, by program_name()
 };
 
 using OpenedDevice = Device::Impl::Opened;

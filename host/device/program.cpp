@@ -85,16 +85,16 @@ std::string program_source(const OpenedDevice& opened, const std::string& entry,
   return flatten(entry, all, files);
 }
 
-std::string build_flags(const OpenedDevice& opened, bool warnings_are_errors) {
+std::string build_flags(const OpenedDevice& opened, bool warnings_are_errors, bool optimised) {
   std::string flags = "-cl-std=CL1.2";
-  if (opened.no_optimiser) flags += " -cl-opt-disable";
+  if (opened.no_optimiser || !optimised) flags += " -cl-opt-disable";
   if (warnings_are_errors || std::getenv("CLRAY_KERNEL_WERROR")) flags += " -Werror";
   return flags;
 }
 
 cl::Program build_source(OpenedDevice& opened, const std::string& entry, const std::string& source,
-                         bool warnings_are_errors) {
-  const std::string flags = build_flags(opened, warnings_are_errors);
+                         bool warnings_are_errors, bool optimised) {
+  const std::string flags = build_flags(opened, warnings_are_errors, optimised);
   const std::string key = flags + "\n" + source;
   const auto built = opened.programs.find(key);
   if (built != opened.programs.end()) return built->second;
@@ -116,15 +116,20 @@ std::string program_name(const std::string& entry, const ProgramOptions& options
     name += "\n";
     for (const int row : *rows) name.append(" ").append(std::to_string(row));
   }
-  return name + fmt::format("\n{} {}", options.walk, options.warnings_are_errors);
+  return name + fmt::format("\n{} {} {}", options.walk, options.warnings_are_errors, options.optimised);
+}
+
+bool program_is_kept(const OpenedDevice& opened, const std::string& entry, const ProgramOptions& options) {
+  const std::string flags = build_flags(opened, options.warnings_are_errors, options.optimised);
+  return kept_binary(opened, flags, program_source(opened, entry, options)).has_value();
 }
 
 cl::Program build_program(OpenedDevice& opened, const std::string& entry, const ProgramOptions& options) {
   const std::string name = program_name(entry, options);
   const auto built = opened.by_name.find(name);
   if (built != opened.by_name.end()) return built->second;
-  const cl::Program program =
-      build_source(opened, entry, program_source(opened, entry, options), options.warnings_are_errors);
+  const cl::Program program = build_source(opened, entry, program_source(opened, entry, options),
+                                           options.warnings_are_errors, options.optimised);
   opened.by_name.emplace(name, program);
   return program;
 }

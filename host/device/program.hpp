@@ -19,10 +19,11 @@ struct ProgramOptions {
   std::vector<int> brdfs, shapes, detectors;   ///< row numbers used, in any order
   int walk = 0;                                ///< row number of the walk
   bool warnings_are_errors = false;            ///< also switched on by the environment's CLRAY_KERNEL_WERROR
+  bool optimised = true;                       ///< false: compiled sooner, and slower; the same numbers
 
   bool operator==(const ProgramOptions& o) const {
     return defines == o.defines && brdfs == o.brdfs && shapes == o.shapes && detectors == o.detectors &&
-           walk == o.walk && warnings_are_errors == o.warnings_are_errors;
+           walk == o.walk && warnings_are_errors == o.warnings_are_errors && optimised == o.optimised;
   }
 };
 
@@ -55,9 +56,12 @@ cl::Program build_program(OpenedDevice& opened, const std::string& entry, const 
 
 /// Builds a source made by flatten, or takes what was built before.
 cl::Program build_source(OpenedDevice& opened, const std::string& entry, const std::string& source,
-                         bool warnings_are_errors);
+                         bool warnings_are_errors, bool optimised = true);
+
+/// Whether the program that build_program would make is kept from earlier.
+bool program_is_kept(const OpenedDevice& opened, const std::string& entry, const ProgramOptions& options);
 
 /// The options given to the OpenCL compiler.
-std::string build_flags(const OpenedDevice& opened, bool warnings_are_errors);
+std::string build_flags(const OpenedDevice& opened, bool warnings_are_errors, bool optimised = true);
 
 }  // namespace clray

@@ -32,7 +32,7 @@ DevicePass::DevicePass(OpenedDevice& device, const PassPlan& plan, const Geometr
   const cl::Program program =
       embedded ? build_program(opened_, "trace.cl", options)
                : build_source(opened_, "trace.cl", program_source(opened_, "trace.cl", options, files),
-                              options.warnings_are_errors);
+                              options.warnings_are_errors, options.optimised);
   kernel_ = make_kernel(opened_, program, "clray_trace");
   fill(plan, geometry);
 }

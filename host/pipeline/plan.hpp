@@ -120,8 +120,9 @@ bool first_is_exact(const Scene& scene, const PassRequest& request, bool connect
 /// Whether rays of the beam go in packets (kernels/stage/packet.cl): a work-item then has points of all replicates.
 bool in_packets(const PassPlan& plan);
 
-/// Leaves out of programs what does not suit the devices: packets need much private memory, so they are for CPUs.
-void fit_to(Device& device, std::vector<PassPlan>* plans);
+/// Fits programs to the devices: packets need much private memory, so they are for CPUs; the compiler's optimiser is
+/// left out for few rays on CPUs alone, and not where it is known that the program is used again.
+void fit_to(Device& device, bool used_again, std::vector<PassPlan>* plans);
 
 /// The detector of this id in a pass, or null.
 const PassDetector* find_detector(const PassPlan& plan, const std::string& id);

@@ -54,7 +54,7 @@ Planned plan_scene(Preparation& kept, const Scene& scene) {
       std::any_of(requests.begin(), requests.end(), [](const PassRequest& r) { return !r.without_rays(); });
   if (rays && !geometry->trees) geometry = &kept.body(scene, true);
   std::vector<PassPlan> plans = plan_passes(scene, *geometry, std::move(requests));
-  fit_to(kept.device(), &plans);
+  fit_to(kept.device(), kept.used_again(), &plans);
   return {*geometry, std::move(plans)};
 }
 

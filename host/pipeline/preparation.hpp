@@ -17,10 +17,11 @@ namespace clray {
 
 class Preparation {
  public:
-  /// For tracing on that device, and no other.
-  explicit Preparation(Device& device) : device_(device) {}
+  /// For tracing on that device, and no other; `used_again`: more than once.
+  explicit Preparation(Device& device, bool used_again = false) : device_(device), used_again_(used_again) {}
 
   Device& device() const { return device_; }
+  bool used_again() const { return used_again_; }
 
   /// The body of a scene, with trees or without: the kept one, or, where it is another, a new one.
   const Geometry& body(const Scene& scene, bool trees);
@@ -40,6 +41,7 @@ class Preparation {
   };
 
   Device& device_;
+  const bool used_again_;
   std::optional<Kept> with_trees_, without_;
   const Geometry* on_devices_ = nullptr;  // that the passes hold
   std::vector<KeptPass> passes_;

@@ -18,6 +18,11 @@ constexpr std::uint64_t kWaiting = 24;
 constexpr std::uint64_t kFewKept = 24;  // numbers that a work-item keeps of a row where that is optional
 // Building a program with packets takes about half a second longer, once. Fewer rays do not win that back.
 constexpr std::uint64_t kManyRays = 1u << 20;
+// The compiler's optimiser takes one to four seconds, once. Without it rays are five times as slow: so few of them take
+// less than a tenth of a second more.
+constexpr std::uint64_t kManyForOptimiser = 1u << 15;
+constexpr int kRunsWithoutOptimiser = 8;  // of one program in one process
+constexpr const char* kOptimiser = "the compiler's optimiser";
 
 std::string walk_line(const std::string& walk) {
   return "walk " + walk + ": " + table_row("walk", walk).meaning;
@@ -31,6 +36,17 @@ void set_walk(const std::string& walk, const std::string& no_packets, Specialise
   if (!no_packets.empty()) program->left_out.push_back("packets of rays: " + no_packets);
 }
 
+/// Lets the program be compiled for the speed of its rays, or for a start as soon as possible.
+void set_optimised(bool optimised, Specialised* program) {
+  program->options.optimised = optimised;
+  const std::string line = std::string(kOptimiser) + ": so few rays are traced before it ends";
+  std::vector<std::string>& out = program->left_out;
+  if (optimised)
+    out.erase(std::remove(out.begin(), out.end(), line), out.end());
+  else
+    out.push_back(line);
+}
+
 class Specialiser {
  public:
   Specialiser(const Scene& scene, const Geometry& geometry, const PassPlan& plan)
@@ -42,6 +58,7 @@ class Specialiser {
     first_hits();
     tables();
     walk();
+    if (at_most(kManyForOptimiser)) set_optimised(false, &out_);
     detectors();
     rays();
     sizes();
@@ -157,11 +174,11 @@ class Specialiser {
                        [](const Part& part) { return part.hinged_component >= 0; });
   }
 
-  // Whether all rays of the pass are known to be few.
-  bool few_rays() const {
+  // Whether all rays of the pass are known to be at most so many.
+  bool at_most(std::uint64_t rays) const {
     const TraceOptions& t = scene_.trace;
     const std::uint64_t most = t.rays != 0 ? std::min(t.rays, t.max_rays) : t.max_rays;
-    return most < kManyRays && most * plan_.request.orientations.size() < kManyRays;
+    return most <= rays && most * plan_.request.orientations.size() <= rays;
   }
 
   // Why rays do not go in packets on any device, or "". Packets have points of every replicate, in one direction and
@@ -174,7 +191,7 @@ class Specialiser {
     if (moving_parts()) return "a component is hinged";
     if (plan_.request.replicates != 16) return "they are for 16 replicates";
     if (all_) return "generic program (--no-specialise)";
-    return asked == "auto" && few_rays() ? "so few rays are traced sooner without" : "";
+    return asked == "auto" && at_most(kManyRays - 1) ? "so few rays are traced sooner without" : "";
   }
 
   void walk() {
@@ -247,6 +264,16 @@ class Specialiser {
   Specialised out_;
 };
 
+/// Whether the optimised program stands ready for every device, or the other was used often enough in this process.
+bool optimiser_pays(Device& device, const Specialised& program) {
+  Device::Impl& impl = device.impl();
+  if (++impl.runs_without_optimiser[program_name(program.entry, program.options)] > kRunsWithoutOptimiser) return true;
+  ProgramOptions options = program.options;
+  options.optimised = true;
+  return std::all_of(impl.devices.begin(), impl.devices.end(),
+                     [&](const OpenedDevice& opened) { return program_is_kept(opened, program.entry, options); });
+}
+
 }  // namespace
 
 bool in_packets(const PassPlan& plan) {
@@ -254,16 +281,19 @@ bool in_packets(const PassPlan& plan) {
   return packet != plan.program.options.defines.end() && packet->second == "1";
 }
 
-void fit_to(Device& device, std::vector<PassPlan>* plans) {
+void fit_to(Device& device, bool used_again, std::vector<PassPlan>* plans) {
   const std::vector<OpenedDevice>& devices = device.impl().devices;
   const bool all_cpus = std::all_of(devices.begin(), devices.end(), [](const OpenedDevice& opened) {
     return opened.info.type.find("cpu") != std::string::npos;
   });
   for (PassPlan& plan : *plans) {
-    if (all_cpus || !in_packets(plan)) continue;
-    std::vector<std::string>& kept = plan.program.kept;
-    kept.erase(std::remove(kept.begin(), kept.end(), walk_line("packet")), kept.end());
-    set_walk("plain", "they are for CPUs", &plan.program);
+    if (!all_cpus && in_packets(plan)) {
+      std::vector<std::string>& kept = plan.program.kept;
+      kept.erase(std::remove(kept.begin(), kept.end(), walk_line("packet")), kept.end());
+      set_walk("plain", "they are for CPUs", &plan.program);
+    }
+    if (!plan.program.options.optimised && (used_again || !all_cpus || optimiser_pays(device, plan.program)))
+      set_optimised(true, &plan.program);
   }
 }
 

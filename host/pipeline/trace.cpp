@@ -229,7 +229,7 @@ void prepare(Preparation& kept, const Scene& scene) {
 }  // namespace
 
 struct Prepared::Impl {
-  Impl(const Scene& s, Device& device) : scene(s), kept(device) {}
+  Impl(const Scene& s, Device& device) : scene(s), kept(device, true) {}
   Scene scene;
   Preparation kept;
 };

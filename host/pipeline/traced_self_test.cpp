@@ -118,11 +118,13 @@ void check_host_kernels() {
 void run_traced_self_test(OpenedDevice& opened, const PassPlan& plan, bool specialised, const KernelFiles& files) {
   if (!host_has_room(plan)) return;
   const bool embedded = &files == &embedded_kernels();
-  const std::string what = "traced\n" + program_source(opened, "trace.cl", plan.program.options, files);
+  const ProgramOptions& options = plan.program.options;
+  const std::string what = std::string("traced\n") + (options.optimised ? "" : "without the optimiser\n") +
+                           program_source(opened, "trace.cl", options, files);
   if (embedded && remembered(opened, what)) return;
   check_host_kernels();
   BuiltInScene built = built_in_scene(content_of(plan, specialised));
-  check_sizes(built.plan.program.options, plan.program.options);
+  check_sizes(built.plan.program.options, options);
   built.plan.program = plan.program;
   const Sums expected = trace_on_host(built.plan, built.geometry, kPoints, kChunk);
   DevicePass device(opened, built.plan, built.geometry, files);

@@ -108,3 +108,22 @@ TEST_CASE("without HOME the user's own folder of the list of users is taken, or 
   CHECK(contains(outcome.err, "/proc/nowhere/clray/kernels is no folder that can be made"));
   CHECK(fs::is_empty(scratch / "tmp"));
 }
+
+TEST_CASE("few rays are traced before the compiler optimises, unless it already has, to the same digest") {
+  const Scratch scratch;
+  spit(scratch / "square.obj", square());
+  const std::vector<std::string> home{"POCL_CACHE_DIR=" + (scratch / "kernels")};
+  const auto explained = [&](const char* rays, const char* packets) {
+    std::vector<std::string> arguments{"--device", "cpu", "--rays", rays, "--method", "points", "--walk", packets};
+    arguments.insert(arguments.end(), {"--explain", "--no-plots", "--out", "out", "square.obj"});
+    const auto outcome = clray(scratch, arguments, home);
+    CAPTURE(outcome.err);
+    CHECK(outcome.status == 0);
+    return contains(outcome.out + outcome.err, "- the compiler's optimiser");
+  };
+  CHECK(explained("4096", "plain"));
+  const std::string soon = digest(scratch);
+  CHECK_FALSE(explained("65536", "plain"));
+  CHECK_FALSE(explained("4096", "plain"));
+  CHECK(digest(scratch) == soon);
+}
