@@ -162,8 +162,8 @@ std::vector<FoundDevice> choose_devices(const std::vector<FoundDevice>& devices,
   if (devices.empty()) {
     if (!kernel_cache_writable()) throw Error(ErrorCode::device, "no OpenCL device found; " + unwritable_cache());
     throw Error(ErrorCode::device,
-                "no OpenCL device found; for the CPU install the packages ocl-icd-libopencl1 and pocl-opencl-icd, "
-                "for a GPU its vendor's OpenCL driver");
+                "no OpenCL device found; for the CPU install the packages ocl-icd-libopencl1 and pocl-opencl-icd (in "
+                "Python, pip install 'clray[pocl]'), for a GPU its vendor's OpenCL driver");
   }
   std::vector<FoundDevice> chosen;
   if (choice.empty()) {

@@ -3,9 +3,10 @@
 // nominal values of IAU 2015 Resolution B3. Kernels have shared/constants.h.
 #pragma once
 
+/// Constants of mathematics and physics.
 namespace clray::constants {
 
-inline constexpr double kPi = 3.14159265358979323846;
+inline constexpr double kPi = 3.14159265358979323846;   ///< pi
 inline constexpr double kDegrees = 180.0 / kPi;         ///< of one radian
 inline constexpr double kLightSpeed_m_s = 299792458.0;  ///< c
 inline constexpr double kPlanck_J_s = 6.62607015e-34;   ///< h

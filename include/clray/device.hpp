@@ -12,13 +12,17 @@ namespace CLRAY_API clray {
 
 /// One OpenCL device as `clray --list devices` shows it.
 struct DeviceInfo {
-  int index = 0;
-  std::string name, platform, vendor, driver, version;
-  std::string type;  ///< "cpu", "gpu", "accelerator", "cpu+gpu" (a simulator claims both), …
-  unsigned compute_units = 0;
-  double memory_GiB = 0.0;
-  bool fp64 = false;
-  bool int64_atomics = false;
+  int index = 0;               ///< among list_devices()
+  std::string name;            ///< as its driver says
+  std::string platform;        ///< of the driver
+  std::string vendor;          ///< of the device
+  std::string driver;          ///< version of the driver
+  std::string version;         ///< of OpenCL
+  std::string type;            ///< "cpu", "gpu", "accelerator", "cpu+gpu" (a simulator claims both), …
+  unsigned compute_units = 0;  ///< cores of a CPU
+  double memory_GiB = 0.0;     ///< that the device has
+  bool fp64 = false;           ///< has double precision, without which it cannot trace
+  bool int64_atomics = false;  ///< adds 64-bit integers atomically
 };
 
 /// All devices of all platforms that have any, in a fixed order. Empty if there are none. Any thread may call it.
@@ -44,14 +48,16 @@ class Device {
   /// Throws Error(device) when there is none such, it lacks fp64, or it fails the self-test.
   explicit Device(const std::string& choice = {});
   ~Device();
+  /// Moves what is opened; the other may then be assigned to or destroyed.
   Device(Device&&) noexcept;
+  /// Closes what was opened here and moves.
   Device& operator=(Device&&) noexcept;
 
   /// What was opened, the first of several. Throws Error(usage) for a Device that was moved from.
   const DeviceInfo& info() const;
 
   struct Impl;
-  Impl& impl();
+  Impl& impl();  ///< for the library itself
 
  private:
   std::unique_ptr<Impl> impl_;

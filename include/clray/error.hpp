@@ -30,8 +30,11 @@ class Error : public std::runtime_error {
         message_(std::move(message)),
         context_(std::move(context)) {}
 
+  /// What kind of thing went wrong.
   ErrorCode code() const noexcept { return code_; }
+  /// What was found and what was expected.
   const std::string& message() const noexcept { return message_; }
+  /// Where: `file:line[:column]`, a key, a device name or empty.
   const std::string& context() const noexcept { return context_; }
 
  private:

@@ -13,10 +13,10 @@ namespace CLRAY_API clray {
 
 /// One key, all in words.
 struct KeyInfo {
-  std::string name;
+  std::string name;      ///< as a scene file has it
   std::string fallback;  ///< what holds if it is not given: a value, "none" or "required"
   std::string values;    ///< what may be given: "(0,inf)", "1 to 64", "\"laser\" or \"sun\"", "file"
-  std::string meaning;
+  std::string meaning;   ///< with the unit, where the name has none
 };
 
 /// The names that list_table() knows: the sections of a scene file and the tables brdf, shape and detector; "keys" is
@@ -35,6 +35,7 @@ const std::vector<std::pair<std::string, double>>& length_units();
 
 /// What is wrong with a number, or a word, for a key, such as ("trace", "seed", -1): "expected …"; empty if nothing is.
 std::string key_fault(const std::string& of, const std::string& name, double value);
+/// The same of a word.
 std::string key_fault(const std::string& of, const std::string& name, const std::string& word);
 
 /// The rows of a table, each with a line per key: name, default, values, meaning. Throws Error(usage) for a name that

@@ -22,7 +22,9 @@ class Prepared {
   /// Checks the scene, builds its body and its programs, and copies them to the device. Throws Error(input, device).
   Prepared(const Scene& scene, Device& device);
   ~Prepared();
+  /// Moves what is kept; the other may then be assigned to or destroyed.
   Prepared(Prepared&&) noexcept;
+  /// Frees what was kept here and moves.
   Prepared& operator=(Prepared&&) noexcept;
 
   /// The scene that it was made of.

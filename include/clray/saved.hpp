@@ -14,7 +14,8 @@ namespace CLRAY_API clray {
 
 /// One of several shares of a run, numbered from 1.
 struct Share {
-  std::uint32_t number = 1, of = 1;
+  std::uint32_t number = 1;  ///< 1 to `of`
+  std::uint32_t of = 1;      ///< how many there are
 };
 
 /// What trace() saves and goes on from.
@@ -29,9 +30,9 @@ struct Saving {
 
 /// What trace() says beside its result.
 struct SavedRun {
-  std::vector<std::string> note;
-  Share share;
-  bool complete = false;  ///< nothing is left to trace
+  std::vector<std::string> note;  ///< that Saving gave it
+  Share share;                    ///< that it holds
+  bool complete = false;          ///< nothing is left to trace
 };
 
 /// Traces as trace() does, with the same bits, saving the sums. Throws Error(usage) for shares of a run whose end is
@@ -47,9 +48,10 @@ bool is_saved(const std::string& file);
 
 /// What verify() compared.
 struct Verified {
-  std::uint64_t ranges = 0, recomputed = 0;  ///< ranges of a view's replicate, or of a view
-  std::uint64_t numbers = 0;                 ///< sums that were compared
-  std::vector<std::string> different;        ///< what differs, in words; empty: nothing
+  std::uint64_t ranges = 0;            ///< of a view's replicate, or of a view, in all
+  std::uint64_t recomputed = 0;        ///< how many of them were computed again
+  std::uint64_t numbers = 0;           ///< sums that were compared
+  std::vector<std::string> different;  ///< what differs, in words; empty: nothing
 };
 
 /// Computes a random share (at least one of each pass) of a run's ranges again and compares their sums bit for bit.

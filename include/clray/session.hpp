@@ -16,19 +16,24 @@ namespace CLRAY_API clray {
 /// Shots of a laser-ranging session over the motion of `scene`, from its delay results (docs/physics.md, section 5);
 /// written by write_result() where the scene has a station and a motion.
 struct SessionSummary {
-  std::uint64_t shots = 0, signal = 0, noise = 0, none = 0;
+  std::uint64_t shots = 0;   ///< fired
+  std::uint64_t signal = 0;  ///< that detected a photon of the body
+  std::uint64_t noise = 0;   ///< that detected another
+  std::uint64_t none = 0;    ///< that detected nothing
 };
 
 /// How to run a session.
 struct SessionOptions {
-  bool plots = true;
+  bool plots = true;                  ///< also draw the picture
   Device* device = nullptr;           ///< samples the shots there; else on this machine's cores. Same bits either way.
   int threads = 0;                    ///< of the host; 0: one per core
   std::uint64_t first_shot = 0;       ///< redo a part alone: from this shot on
   std::uint64_t shots = 0;            ///< so many shots; 0: to the end of the motion
   std::string stem = "observations";  ///< of the file names
   /// Which delay results: names as in ResultKey. All empty: the first group seen from the source.
-  std::string detector, observer, variant;
+  std::string detector;
+  std::string observer;                          ///< the same
+  std::string variant;                           ///< the same
   std::vector<std::string>* warnings = nullptr;  ///< receives what went wrong without harm
 };
 

@@ -16,14 +16,15 @@ namespace CLRAY_API clray {
 
 /// Files that another part adds to a result, and its entry in the summary.
 struct MoreFiles {
-  std::vector<std::string> names;         ///< written into the folder given
-  std::string summary_key, summary_json;  ///< an entry for summary.json, as JSON text; empty for none
-  std::string text = {};                  ///< shown to a person at the end of a run; may be empty
+  std::vector<std::string> names;  ///< written into the folder given
+  std::string summary_key;         ///< name of an entry for summary.json; empty for none
+  std::string summary_json;        ///< that entry as JSON text
+  std::string text = {};           ///< shown to a person at the end of a run; may be empty
 };
 
 /// How to write results.
 struct WriteOptions {
-  bool plots = true;
+  bool plots = true;                             ///< also draw pictures
   bool netcdf = false;                           ///< also NetCDF files, beside the tables and cubes that have one
   std::string command;                           ///< as typed, for the summary
   std::string reference_file;                    ///< a summary.json or delay.csv to measure the true error against
@@ -53,8 +54,8 @@ std::string result_folder(const Result& result, const std::string& folder);
 /// Totals to measure the true error against, by "detector/observer/variant/band/orientation"; behind it "/sum/number"
 /// for sums that are results by themselves. In the units of the totals in summary.json.
 struct Reference {
-  std::string file;
-  std::map<std::string, double> totals;
+  std::string file;                      ///< that was read
+  std::map<std::string, double> totals;  ///< by that key
 };
 
 /// Reads a summary.json or a delay.csv. Throws Error(input).
@@ -70,6 +71,7 @@ struct ResultText {
   std::string tables;  ///< of all others, each behind an empty line
   std::string totals;  ///< a line for each record or number
 };
+/// Words of a result. Throws Error(usage) for one that check_result() refuses.
 ResultText describe_result(const Result& result);
 
 /// "1.2345 ± 0.0012": a number rounded to two digits of its error, in powers of ten where that reads better.

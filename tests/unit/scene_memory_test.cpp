@@ -69,3 +69,16 @@ TEST_CASE("messages name the place in the text") {
   options.meshes["panel"] = nullptr;
   CHECK(message_of("[[component]]\nfile = \"panel\"\n", options).find("here/scene:2:8") == 0);
 }
+
+TEST_CASE("files that stand elsewhere are found by the names that keys give them") {
+  const std::string orbit = std::string(CLRAY_SOURCE_DIR) + "/meshes/box_wing.obj";  // any file: it is not read yet
+  const std::string text =
+      "[[component]]\nshape = \"sphere\"\n[source]\nkind = \"sun\"\n[[observer]]\necef_m = [6.4e6, 0, 0]\n"
+      "[pass]\nstart = 2026-01-01T00:00:00Z\nstop = 2026-01-01T00:01:00Z\nstep_s = 10\nephemeris = \"orbit\"\n";
+  SceneOptions options;
+  options.files["orbit"] = orbit;
+  CHECK(parse_scene(text, "here/scene", options).pass->ephemeris == orbit);
+  CHECK(message_of(text).find("here/scene:11:13") == 0);
+  options.files["orbit"] = orbit + ".nowhere";
+  CHECK(message_of(text, options).find("here/scene:11:13: pass.ephemeris: \"" + orbit + ".nowhere\"") == 0);
+}

@@ -68,7 +68,7 @@ Band table_band(TomlTable b) {
 
 /// One band: [low, high], "curve.csv", or a table.
 Band read_band(TomlTable& t, const toml::node& node) {
-  if (const toml::table* named = node.as_table()) return table_band(TomlTable(*named, "source.bands", t.scene_file()));
+  if (const toml::table* named = node.as_table()) return table_band(t.inner(*named, "source.bands"));
   if (node.is_string()) {
     const std::string word = **node.as_string();
     const std::vector<std::string>& known = photometric_bands();
@@ -76,7 +76,7 @@ Band read_band(TomlTable& t, const toml::node& node) {
     // A table of one entry, so that files are found and faults told in one place.
     toml::table one;
     one.insert("bands", *node.as_string());
-    TomlTable entry(one, "source", t.scene_file());
+    TomlTable entry = t.inner(one, "source");
     try {
       return curve_band(entry, "bands", "");
     } catch (const Error& e) {

@@ -241,7 +241,7 @@ void read_components(TomlTable& root, const SceneOptions& options, double length
 
 Scene read_scene_text(const std::string& text, const std::string& path, const SceneOptions& options) {
   const toml::table parsed = parse_toml(text, path);
-  TomlTable root(parsed, "", path);
+  TomlTable root(parsed, "", path, &options.files);
   root.know({"length_unit", "reference_point", "material", "component", "variant", "source", "observer", "motion",
              "pass", "station", "detector", "trace"});
   Scene scene;

@@ -57,8 +57,9 @@ std::string range_text(const Range& r) {
   return fmt::format("{}{},{}{}", r.low_included ? '[' : '(', r.low, r.high, r.high_included ? ']' : ')');
 }
 
-TomlTable::TomlTable(const toml::table& table, std::string label, std::string file)
-    : table_(&table), label_(std::move(label)), file_(std::move(file)) {}
+TomlTable::TomlTable(const toml::table& table, std::string label, std::string file,
+                     const std::map<std::string, std::string>* elsewhere)
+    : table_(&table), label_(std::move(label)), file_(std::move(file)), elsewhere_(elsewhere) {}
 
 std::string TomlTable::place_of(const toml::source_region& where) const {
   return fmt::format("{}:{}:{}", file_, where.begin.line, where.begin.column);
@@ -224,6 +225,11 @@ std::optional<double> TomlTable::row_key(const TableKey& key) {
 
 std::string TomlTable::file(const std::string& key) {
   const std::string name = text(key);
+  if (elsewhere_ != nullptr && elsewhere_->count(name) != 0) {
+    const std::string& path = elsewhere_->at(name);
+    if (const std::string fault = text::input_file_fault(path); !fault.empty()) fail(key, "\"" + path + "\" " + fault);
+    return path;
+  }
   fs::path folder = fs::path(file_).parent_path();
   if (folder.empty()) folder = ".";
   std::error_code error;
@@ -250,7 +256,7 @@ std::optional<TomlTable> TomlTable::table(const std::string& key) {
   const toml::node* value = node(key);
   if (value == nullptr) return {};
   if (!value->is_table()) fail(key, "expected a table, found " + found(*value));
-  return TomlTable(*value->as_table(), key_path(key), file_);
+  return inner(*value->as_table(), key_path(key));
 }
 
 std::vector<TomlTable> TomlTable::tables(const std::string& key) {
@@ -258,14 +264,14 @@ std::vector<TomlTable> TomlTable::tables(const std::string& key) {
   std::vector<TomlTable> all;
   if (value == nullptr) return all;
   if (const toml::table* one = value->as_table()) {
-    all.emplace_back(*one, key_path(key), file_);
+    all.push_back(inner(*one, key_path(key)));
     return all;
   }
   const toml::array* array = value->as_array();
   if (array == nullptr) fail(key, "expected a table, found " + found(*value));
   for (const toml::node& each : *array) {
     if (!each.is_table()) fail_at(each.source(), key_path(key) + ": expected a table, found " + found(each));
-    all.emplace_back(*each.as_table(), key_path(key), file_);
+    all.push_back(inner(*each.as_table(), key_path(key)));
   }
   return all;
 }

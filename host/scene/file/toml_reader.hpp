@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -37,8 +38,10 @@ using text::did_you_mean;
 
 class TomlTable {
  public:
-  /// `label` is what messages call the table, e.g. "source" or "component"; `file` and `folder` are the scene's.
-  TomlTable(const toml::table& table, std::string label, std::string file);
+  /// `label` is what messages call the table, e.g. "source" or "component"; `file` is the scene's. `elsewhere` has
+  /// files that stand anywhere, by the names that keys give them (SceneOptions::files).
+  TomlTable(const toml::table& table, std::string label, std::string file,
+            const std::map<std::string, std::string>* elsewhere = nullptr);
 
   bool has(const std::string& key);
   double number(const std::string& key, const Range& range, std::optional<double> fallback = {});
@@ -58,7 +61,7 @@ class TomlTable {
   std::optional<double> row_key(const TableKey& key);
   /// A whole number of a table row, exact also beyond 2^53.
   std::uint64_t row_whole(const TableKey& key);
-  /// A file inside the scene's folder that exists, as a path to open.
+  /// A file inside the scene's folder, or one of those elsewhere, that exists, as a path to open.
   std::string file(const std::string& key);
   /// A table below this one, or nothing.
   std::optional<TomlTable> table(const std::string& key);
@@ -84,7 +87,10 @@ class TomlTable {
   const std::string& label() const { return label_; }
   /// Where the table stands, for errors found later.
   std::string place(const std::string& key = {}) const;
-  const std::string& scene_file() const { return file_; }
+  /// A table within this one.
+  TomlTable inner(const toml::table& table, std::string label) const {
+    return TomlTable(table, std::move(label), file_, elsewhere_);
+  }
 
  private:
   [[noreturn]] void unknown(const toml::key& key) const;
@@ -93,6 +99,7 @@ class TomlTable {
   const toml::table* table_;
   std::string label_;
   std::string file_;
+  const std::map<std::string, std::string>* elsewhere_;
   std::set<std::string> known_;
 };
 

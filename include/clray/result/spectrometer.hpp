@@ -9,15 +9,17 @@ namespace CLRAY_API clray {
 
 /// The one-pixel spectrometer: A in one band.
 struct SpectrometerResult {
-  ResultKey key;
-  Band band;
-  Estimate intensity_m2_per_sr;
-  double source_W_m2 = 0.0;                                        ///< of the source inside the band
-  double received_W_m2 = 0.0, received_W_m2_standard_error = 0.0;  ///< at the observer's range; 0 without one
-  double magnitude_AB = 0.0, magnitude_standard_error = 0.0;       ///< NaN without a range
-  double magnitude_Vega = 0.0;                                     ///< NaN also where Vega's table has no light
-  double phase_angle_rad = 0.0;
-  double air_mass = 0.0;        ///< on the way to the observer's site; NaN where none is known
+  ResultKey key;                              ///< which member of the run it is
+  Band band;                                  ///< with its filter
+  Estimate intensity_m2_per_sr;               ///< A: intensity toward the observer over irradiance at the body
+  double source_W_m2 = 0.0;                   ///< of the source inside the band
+  double received_W_m2 = 0.0;                 ///< at the observer's range; 0 without one
+  double received_W_m2_standard_error = 0.0;  ///< same unit
+  double magnitude_AB = 0.0;                  ///< NaN without a range
+  double magnitude_standard_error = 0.0;      ///< of either magnitude; NaN without a range
+  double magnitude_Vega = 0.0;                ///< NaN also where Vega's table has no light
+  double phase_angle_rad = 0.0;               ///< between source and observer, seen from the body
+  double air_mass = 0.0;                      ///< on the way to the observer's site; NaN where none is known
   double extinction_mag = 0.0;  ///< within received power and magnitudes: the observer's, times the air mass
 };
 

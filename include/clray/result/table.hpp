@@ -12,10 +12,10 @@ namespace CLRAY_API clray {
 
 /// The numbers of a sum that a detector's row states with a unit, each with its error.
 struct TableResult {
-  ResultKey key;
-  std::string name;  ///< of the sum
-  std::string unit;
-  std::vector<Estimate> values;
+  ResultKey key;                 ///< which member of the run it is
+  std::string name;              ///< of the sum
+  std::string unit;              ///< of its values
+  std::vector<Estimate> values;  ///< in the order of the detector's row
 };
 
 }  // namespace clray
