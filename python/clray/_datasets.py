@@ -71,9 +71,12 @@ class _Layout:
             self.shape.append(len(values))
         self.order = at
         self.full = len(set(at.tolist())) == len(members) == int(np.prod(self.shape, dtype=np.int64))
+        self.in_order = self.full and bool((np.diff(at) == 1).all())
 
     def place(self, rows: np.ndarray) -> np.ndarray:
-        mine = rows[self.members]
+        mine = rows if len(rows) == len(self.members) else rows[self.members]
+        if self.in_order:  # as they are, without a copy
+            return mine.reshape(tuple(self.shape) + mine.shape[1:])
         if not self.full:  # some records are missing: NaN there
             out = np.full((int(np.prod(self.shape, dtype=np.int64)),) + mine.shape[1:], np.nan)
         else:
@@ -168,6 +171,11 @@ def datasets(raw: Any) -> dict[str, xarray.Dataset]:
     table = raw.table()
     if table["detector"]:
         sets.update(_tables(table))
+    times = raw.views()["time"]
+    if len(times) > 1 and np.ptp(times) > 0:
+        for name, data in sets.items():
+            if "view" in data.sizes:
+                sets[name] = data.assign_coords(time=("view", times[data.view.values], {"units": "s"}))
     for kind, names in kinds.items():
         if len(names) == 1:
             sets.setdefault(kind, sets[names[0]])

@@ -2,32 +2,28 @@
 """Scenes from files, dicts and meshes in memory, and changes of them.
 
 A dict has the keys of a scene file (docs/scene-file.md). It is written as TOML and read like one, so that both have
-the same rules and the same messages. Numbers may carry astropy units where the key names one.
+the same rules and the same messages. Numbers may carry astropy units, and the orbit of a pass may be an Orbit.
 """
 from __future__ import annotations
 
 import math
 import os
 from collections.abc import Mapping
+from datetime import datetime
 from typing import Any
 
 from . import _clray
 from ._clray import Mesh, Scene
+from ._orbits import Orbit, date_of
+from ._units import in_unit, unit_of
 
-# What the end of a key says of its unit, as astropy writes it.
-_UNITS = {"_ns": "ns", "_ps": "ps", "_s": "s", "_m": "m", "_nm": "nm", "_deg": "deg", "_rad": "rad", "_mrad": "mrad",
-          "_urad": "urad", "_arcsec": "arcsec", "_J": "J", "_mJ": "mJ", "_Hz": "Hz", "_kHz": "kHz", "_K": "K",
-          "_hPa": "hPa", "_W_m2": "W/m2"}
-_LENGTHS = {"radius", "inner_radius", "height", "depth", "a", "b", "c", "translate", "point", "reference_point"}
-
-
-def load(path: str | os.PathLike, *, length_unit_m: float = 0.0, detectors: list[str] | None = None) -> Scene:
+def load(path: str | os.PathLike, *, length_unit_m: Any = 0.0, detectors: list[str] | None = None) -> Scene:
     """Reads a scene file (.toml) or a mesh (.obj .ply .stl .off).
 
     `length_unit_m` is the unit of mesh files; 0 takes what the scene file says, or metres. `detectors` (kinds) stand
     instead of the scene's.
     """
-    return _clray.load_scene(os.fspath(path), length_unit_m, detectors or [])
+    return _clray.load_scene(os.fspath(path), float(in_unit("length_unit_m", length_unit_m)), detectors or [])
 
 
 def mesh(shape: Any, faces: Any = None) -> Mesh:
@@ -44,7 +40,7 @@ def mesh(shape: Any, faces: Any = None) -> Mesh:
         raise ValueError(f"expected triangles, an array of shape (n, 3), found {triangles.shape}")
     if triangles.size and (triangles.min() < 0 or triangles.max() >= len(vertices)):
         raise ValueError("a face names a vertex that there is not")
-    points = np.ascontiguousarray(_number("translate", vertices), dtype=np.float64)
+    points = np.ascontiguousarray(in_unit("vertices", vertices), dtype=np.float64)
     return _clray.make_mesh(points, np.ascontiguousarray(triangles, dtype=np.uint32))
 
 
@@ -66,6 +62,11 @@ def scene(content: Mapping[str, Any] | Any, faces: Any = None, *, folder: str | 
     materials = tables.get("material", [])
     for number, each in enumerate(materials):
         each.setdefault("name", f"material-{number}" if number else "material")
+    files: dict[str, str] = {}
+    if isinstance(tables.get("pass"), Mapping) and isinstance(tables["pass"].get("ephemeris"), Orbit):
+        orbit = tables["pass"]["ephemeris"]
+        files["orbit"] = orbit._file()
+        tables["pass"] = {**tables["pass"], "ephemeris": "orbit", "frame": orbit.frame}
     components = tables.get("component", [])
     for number, component in enumerate(components):
         if "mesh" in component:
@@ -75,7 +76,7 @@ def scene(content: Mapping[str, Any] | Any, faces: Any = None, *, folder: str | 
             component["file"] = name
         if len(materials) == 1 and "material" not in component and "materials" not in component:
             component["material"] = materials[0]["name"]
-    return _clray.parse_scene(_toml(tables), os.path.join(os.fspath(folder), "scene"), meshes)
+    return _clray.parse_scene(_toml(tables), os.path.join(os.fspath(folder), "scene"), meshes, files)
 
 
 def _as_list(key: str, value: Any) -> Any:
@@ -85,25 +86,13 @@ def _as_list(key: str, value: Any) -> Any:
     return value
 
 
-def _number(key: str, value: Any) -> Any:
-    """A number or array without its astropy unit, in the unit that the key names."""
-    if not hasattr(value, "unit") or not hasattr(value, "to_value"):
-        return value
-    for end, unit in sorted(_UNITS.items(), key=lambda item: -len(item[0])):
-        if key.endswith(end):
-            return value.to_value(unit)
-    if key in _LENGTHS:
-        return value.to_value("m")
-    return value.to_value("")
-
-
 def _text(text: str) -> str:
     out = text.replace("\\", "\\\\").replace('"', '\\"')
     return '"' + "".join(c if c >= " " and c != "\x7f" else f"\\u{ord(c):04x}" for c in out) + '"'
 
 
 def _value(key: str, value: Any) -> str:
-    value = _number(key, value)
+    value = in_unit(key, value)
     if hasattr(value, "tolist"):  # numpy
         value = value.tolist()
     if isinstance(value, bool):
@@ -115,11 +104,12 @@ def _value(key: str, value: Any) -> str:
     if isinstance(value, (str, os.PathLike)):
         return _text(os.fspath(value))
     if isinstance(value, Mapping):
-        return "{ " + ", ".join(f"{_text(k)} = {_value(k, v)}" for k, v in value.items() if v is not None) + " }"
+        pairs = [(k, _value(k if unit_of(k) else key, v)) for k, v in value.items() if v is not None]
+        return "{ " + ", ".join(f"{_text(k)} = {v}" for k, v in pairs) + " }"
     if isinstance(value, (list, tuple)):
         return "[" + ", ".join(_value(key, each) for each in value) + "]"
-    if value.__class__.__name__ == "datetime":
-        return value.isoformat()
+    if isinstance(value, datetime) or hasattr(value, "to_datetime"):
+        return _text(date_of(value).isoformat(timespec="microseconds"))
     raise TypeError(f"{key}: a scene has no {type(value).__name__}")
 
 
@@ -161,11 +151,11 @@ def changed(scene: Scene, *, source: Any = None, observer: Any = None, materials
             scene._set_observer(name, *_direction(direction))
     for name, numbers in (materials or {}).items():
         for key, value in numbers.items():
-            scene._set_material(name, key, float(_number(key, value)))
+            scene._set_material(name, key, float(in_unit(key, value)))
     for key, value in options.items():
         if not hasattr(scene.trace, key):
             raise TypeError(f"[trace] has no key {key}")
-        setattr(scene.trace, key, _number(key, value))
+        setattr(scene.trace, key, in_unit(key, value))
     if views:
         rows = {}
         for key in ("sources", "attitudes", "observers"):
@@ -175,6 +165,6 @@ def changed(scene: Scene, *, source: Any = None, observer: Any = None, materials
                 continue
             array = np.asarray(given, dtype=np.float64)
             rows[key] = np.ascontiguousarray(array.reshape(len(array), -1))
-        times = np.asarray(_number("_s", views.get("times", ())), dtype=np.float64)
+        times = np.asarray(in_unit("_s", views.get("times", ())), dtype=np.float64)
         scene._set_views(rows["sources"], rows["attitudes"], rows["observers"], times.tolist())
     return scene

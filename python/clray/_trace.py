@@ -2,10 +2,9 @@
 """Devices, traces, prepared scenes and results."""
 from __future__ import annotations
 
-import json
 import os
 import sys
-import tempfile
+from collections.abc import Callable
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -19,6 +18,7 @@ if TYPE_CHECKING:
 _NUMBERS = ("digest", "kept", "left_out", "partial", "rays", "rays_total", "reached_percent", "seconds", "seed",
             "stopped_by", "target_reached", "warnings")  # of the run
 _opened: dict[str, Device] = {}
+Progress = bool | Callable[[str, float, int, float, float], Any] | None
 
 
 def _device(choice: Device | str | None) -> Device:
@@ -39,41 +39,46 @@ def _scene(given: Any) -> Scene:
 
 
 class _Bar:
-    """Progress by tqdm, where it is installed and someone may look."""
+    """Progress by tqdm, where it is installed and someone may look, or by a function."""
 
-    def __init__(self, wanted: bool | None) -> None:
+    def __init__(self, wanted: Progress) -> None:
         self.bar = None
-        if wanted is False or (wanted is None and not sys.stderr.isatty()):
+        self.listener = wanted if callable(wanted) else None
+        if self.listener or wanted is False or (wanted is None and not sys.stderr.isatty()):
             return
         try:
             from tqdm.auto import tqdm
         except ImportError:
             return
         self.bar = tqdm(total=100, unit="%", leave=False, bar_format="{l_bar}{bar}| {postfix}")
+        self.listener = self._draw
 
-    def tell(self, phase: str, fraction: float, rays: int, error: float, seconds_left: float) -> None:
+    def _draw(self, phase: str, fraction: float, rays: int, error: float, seconds_left: float) -> None:
         self.bar.set_description(phase)
         self.bar.n = round(100 * min(1.0, fraction), 1)
         self.bar.set_postfix_str(f"±{100 * error:.2g} %" if error == error and error > 0 else "")
 
     def run(self, trace: Any) -> Any:
         try:
-            return trace(self.tell if self.bar is not None else None)
+            return trace(self.listener)
         finally:
             if self.bar is not None:
                 self.bar.close()
 
 
-def trace(scene: Any, *, device: Device | str | None = None, progress: bool | None = None, **changes: Any) -> "Result":
+def trace(scene: Any, *, device: Device | str | None = None, progress: Progress = None, stop: Any = None,
+          **changes: Any) -> "Result":
     """Traces a scene: a Scene, a path, a dict or a mesh.
 
     `device` is a Device or what one is chosen by ("cpu", "gpu", "all", part of a name); it stays open for later calls.
-    `progress`: a bar by tqdm; None shows it on a terminal. Changes are those of Prepared.trace(). The interpreter lock
-    is free while it runs, and Ctrl-C stops it.
+    `progress`: a bar by tqdm (None: on a terminal), or a function that is called a few times a second with phase,
+    fraction of it, rays, relative error and seconds left. `stop`: a threading.Event (or what else has `is_set()`); once
+    another thread sets it, the trace ends with what it has. Changes are those of Prepared.trace(). The interpreter
+    lock is free while it runs, and Ctrl-C stops it.
     """
     scene = _changed(_scene(scene), changes)
     opened = _device(device)
-    return Result(_Bar(progress).run(lambda tell: _clray.trace(scene, opened, tell)), scene)
+    return Result(_Bar(progress).run(lambda tell: _clray.trace(scene, opened, tell, stop)), scene)
 
 
 def _changed(scene: Scene, changes: dict[str, Any]) -> Scene:
@@ -96,7 +101,7 @@ class Prepared:
         """A copy of the scene that it was made of."""
         return self._prepared.scene
 
-    def trace(self, scene: Any = None, *, progress: bool | None = False, **changes: Any) -> "Result":
+    def trace(self, scene: Any = None, *, progress: Progress = False, stop: Any = None, **changes: Any) -> "Result":
         """Traces that scene, or another one of the same body, with changes:
 
         source=(x, y, z); observer=(x, y, z) or {name: (x, y, z)}; materials={"paint": {"rho": 0.3}}; options of
@@ -105,7 +110,7 @@ class Prepared:
         observers (n, observers, 3), body frame; times (n).
         """
         given = _changed(self._scene if scene is None else _scene(scene), changes)
-        return Result(_Bar(progress).run(lambda tell: self._prepared.trace(given, tell)), given)
+        return Result(_Bar(progress).run(lambda tell: self._prepared.trace(given, tell, stop)), given)
 
 
 class Result:
@@ -149,6 +154,9 @@ class Result:
     @cached_property
     def summary(self) -> dict[str, Any]:
         """The content of summary.json."""
+        import json
+        import tempfile
+
         with tempfile.TemporaryDirectory() as folder:
             out = os.path.join(folder, "result")
             self.write(out, plots=False)

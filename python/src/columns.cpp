@@ -6,6 +6,8 @@
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/vector.h>
 
+#include <algorithm>
+
 #include <clray/result.hpp>
 #include <clray/write.hpp>
 
@@ -36,16 +38,16 @@ nb::object column(const std::vector<Record>& records, Get&& get) {
   });
 }
 
-/// A row of numbers of each record, as long as the longest; NaN behind shorter ones.
-template <class T, class Record, class Get>
-nb::object rows(const std::vector<Record>& records, Get&& get) {
+/// A row of numbers of each record, as long as the longest; `filler` behind shorter ones.
+template <class Out, class Record, class Get>
+nb::object rows(const std::vector<Record>& records, Get&& get, Out filler) {
   std::size_t width = 0;
   for (const Record& r : records) width = std::max<std::size_t>(width, get(r).size());
-  return array_of<double>({records.size(), width}, [&](double* out) {
+  return array_of<Out>({records.size(), width}, [&](Out* out) {
     for (const Record& r : records) {
-      const std::vector<T>& from = get(r);
-      for (std::size_t k = 0; k < width; ++k)
-        *out++ = k < from.size() ? static_cast<double>(from[k]) : std::numeric_limits<double>::quiet_NaN();
+      const auto& from = get(r);
+      for (const auto x : from) *out++ = static_cast<Out>(x);
+      out = std::fill_n(out, width - from.size(), filler);
     }
   });
 }
@@ -101,11 +103,12 @@ nb::dict delay(const Result& result) {
   d["bin_width"] = column(all, [](const R& r) { return r.bin_width_s; });
   d["below"] = column(all, [](const R& r) { return r.below_m2_per_sr; });
   d["above"] = column(all, [](const R& r) { return r.above_m2_per_sr; });
-  d["A_t"] = rows<double>(all, [](const R& r) -> const auto& { return r.bin_m2_per_sr; });
-  d["A_t_error"] = rows<double>(all, [](const R& r) -> const auto& { return r.bin_standard_error; });
-  d["A_t_upper_bound"] = rows<double>(all, [](const R& r) -> const auto& { return r.bin_upper_bound; });
-  d["hits"] = rows<std::uint64_t>(all, [](const R& r) -> const auto& { return r.hits; });
-  d["resolved"] = rows<std::uint8_t>(all, [](const R& r) -> const auto& { return r.resolved; });
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  d["A_t"] = rows(all, [](const R& r) -> const auto& { return r.bin_m2_per_sr; }, kNone);
+  d["A_t_error"] = rows(all, [](const R& r) -> const auto& { return r.bin_standard_error; }, kNone);
+  d["A_t_upper_bound"] = rows(all, [](const R& r) -> const auto& { return r.bin_upper_bound; }, kNone);
+  d["hits"] = rows(all, [](const R& r) -> const auto& { return r.hits; }, kNone);
+  d["resolved"] = rows(all, [](const R& r) -> const auto& { return r.resolved; }, std::uint8_t{0});
   return d;
 }
 

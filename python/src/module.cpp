@@ -124,10 +124,11 @@ std::vector<Orientation> make_views(const Scene& scene, const std::optional<Rows
   return views;
 }
 
-/// Asks Python for signals and tells it the progress; stops the trace where either wants that.
+/// Asks Python for signals, and an event whether it is set, and tells the progress; stops the trace where one of them
+/// wants that.
 class Listener {
  public:
-  explicit Listener(nb::object progress) : progress_(std::move(progress)) {
+  Listener(nb::object progress, nb::object event) : progress_(std::move(progress)), event_(std::move(event)) {
     hooks_.stop = &stop_;
     hooks_.progress = [this](const clray::Progress& p) { hear(p); };
   }
@@ -151,6 +152,7 @@ class Listener {
     const nb::gil_scoped_acquire locked;
     try {
       if (PyErr_CheckSignals() != 0) throw nb::python_error();
+      if (!event_.is_none() && nb::cast<bool>(event_.attr("is_set")())) stop_ = true;
       if (!progress_.is_none()) progress_(std::string(p.phase), p.fraction, p.rays, p.relative_error, p.seconds_left);
     } catch (...) {
       failure_ = std::current_exception();
@@ -158,7 +160,7 @@ class Listener {
     }
   }
 
-  nb::object progress_;
+  nb::object progress_, event_;
   clray::TraceHooks hooks_;
   std::atomic<bool> stop_{false};
   std::chrono::steady_clock::time_point last_{};
@@ -231,6 +233,16 @@ struct Words {
   }
 };
 
+/// An option that is a number, with a unit of astropy or without.
+void bind_number(nb::class_<clray::TraceOptions>* options, const char* key, double clray::TraceOptions::*option) {
+  options->def_prop_rw(
+      key, [option](const clray::TraceOptions& o) { return o.*option; },
+      [option, key](clray::TraceOptions& o, const nb::object& value) {
+        o.*option = nb::cast<double>(nb::module_::import_("clray._units").attr("in_unit")(key, value));
+      },
+      nb::for_setter("value"_a));
+}
+
 const Words<clray::Method> kMethods = {"method",
                                        &clray::TraceOptions::method,
                                        {{"auto", clray::Method::automatic},
@@ -255,10 +267,10 @@ void bind_scene(nb::module_& m) {
   nb::class_<Options> options(m, "TraceOptions", "When to stop and how to sample: the keys of [trace].");
   kMethods.bind(&options);
   kSamplers.bind(&options);
+  bind_number(&options, "target_error_percent", &Options::target_error_percent);
+  bind_number(&options, "time_limit_s", &Options::time_limit_s);
   options.def_rw("max_bounces", &Options::max_bounces)
       .def_rw("rays", &Options::rays)
-      .def_rw("target_error_percent", &Options::target_error_percent)
-      .def_rw("time_limit_s", &Options::time_limit_s)
       .def_rw("max_rays", &Options::max_rays)
       .def_rw("seed", &Options::seed)
       .def_rw("replicates", &Options::replicates)
@@ -308,25 +320,27 @@ void bind_scene(nb::module_& m) {
            },
            "sources"_a.none(), "attitudes"_a.none(), "observers"_a.none(), "times"_a)
       .def("_clear_views", [](Scene& s) { s.views.clear(); });
-  const auto options_of = [](std::map<std::string, std::shared_ptr<const clray::Mesh>> meshes, double unit,
+  using Files = std::map<std::string, std::string>;
+  const auto options_of = [](std::map<std::string, std::shared_ptr<const clray::Mesh>> meshes, Files files, double unit,
                              std::vector<std::string> detectors) {
     clray::SceneOptions options;
     options.meshes = std::move(meshes);
+    options.files = std::move(files);
     options.length_unit_m = unit;
     options.detectors = std::move(detectors);
     return options;
   };
   m.def("load_scene",
         [=](const std::string& path, double unit, const std::vector<std::string>& detectors) {
-          return clray::load_scene(path, options_of({}, unit, detectors));
+          return clray::load_scene(path, options_of({}, {}, unit, detectors));
         },
         "path"_a, "length_unit_m"_a = 0.0, "detectors"_a = std::vector<std::string>{});
   m.def("parse_scene",
         [=](const std::string& text, const std::string& path,
-            const std::map<std::string, std::shared_ptr<clray::Mesh>>& meshes) {
-          return clray::parse_scene(text, path, options_of({meshes.begin(), meshes.end()}, 0.0, {}));
+            const std::map<std::string, std::shared_ptr<clray::Mesh>>& meshes, const Files& files) {
+          return clray::parse_scene(text, path, options_of({meshes.begin(), meshes.end()}, files, 0.0, {}));
         },
-        "text"_a, "path"_a, "meshes"_a);
+        "text"_a, "path"_a, "meshes"_a, "files"_a);
 }
 
 void bind_device(nb::module_& m) {
@@ -351,23 +365,23 @@ void bind_device(nb::module_& m) {
 
 void bind_trace(nb::module_& m) {
   m.def("trace",
-        [](const Scene& scene, clray::Device& device, nb::object progress) {
-          return Listener(std::move(progress)).run([&](const clray::TraceHooks& hooks) {
+        [](const Scene& scene, clray::Device& device, nb::object progress, nb::object stop) {
+          return Listener(std::move(progress), std::move(stop)).run([&](const clray::TraceHooks& hooks) {
             return clray::trace(scene, device, hooks);
           });
         },
-        "scene"_a, "device"_a, "progress"_a.none() = nb::none());
+        "scene"_a, "device"_a, "progress"_a.none() = nb::none(), "stop"_a.none() = nb::none());
   nb::class_<clray::Prepared>(m, "Prepared")
       .def(nb::init<const Scene&, clray::Device&>(), "scene"_a, "device"_a, nb::keep_alive<1, 3>(),
            nb::call_guard<nb::gil_scoped_release>())
       .def_prop_ro("scene", [](const clray::Prepared& p) { return Scene(p.scene()); })
       .def("trace",
-           [](clray::Prepared& prepared, const Scene& scene, nb::object progress) {
-             return Listener(std::move(progress)).run([&](const clray::TraceHooks& hooks) {
+           [](clray::Prepared& prepared, const Scene& scene, nb::object progress, nb::object stop) {
+             return Listener(std::move(progress), std::move(stop)).run([&](const clray::TraceHooks& hooks) {
                return prepared.trace(scene, hooks);
              });
            },
-           "scene"_a, "progress"_a.none() = nb::none());
+           "scene"_a, "progress"_a.none() = nb::none(), "stop"_a.none() = nb::none());
 }
 
 }  // namespace
