@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from ._units import in_unit
+from ._units import in_unit, seconds
 
 if TYPE_CHECKING:
     import xarray
@@ -16,7 +16,7 @@ def periods(values: Any, times: Any = None, errors: Any = None, *, shortest_s: A
     `false_alarm` probability (of one term alone).
 
     `values`: a DataArray of a result over its views, such as result.spectrometer.A, whose times are known, or numbers
-    with `times` (s). `errors` are standard errors, those of the result where nothing is given. Periods are looked for
+    with `times` (s, quantities or dates). `errors` are standard errors, those of the result where nothing is given. Periods are looked for
     from `shortest_s` (twice the mean step) to `longest_s` (the span). `terms` harmonics are fitted: a body that looks
     alike from two sides shows half its turn with one term, and its turn with two or more.
     """
@@ -31,7 +31,7 @@ def periods(values: Any, times: Any = None, errors: Any = None, *, shortest_s: A
         if "time" not in getattr(values, "coords", ()):
             raise ValueError("expected a DataArray with times, such as result.spectrometer.A of a motion, or `times`")
         times = values.coords["time"]
-    t = np.asarray(in_unit("_s", times), dtype=float)
+    t = seconds(times)
     y = np.asarray(values, dtype=float)
     if t.ndim != 1 or y.shape != t.shape:
         raise ValueError(f"expected one value a time, found values of shape {y.shape} and times of shape {t.shape}: "

@@ -15,7 +15,7 @@ from typing import Any
 from . import _clray
 from ._clray import Mesh, Scene
 from ._orbits import Orbit, date_of
-from ._units import in_unit, unit_of
+from ._units import in_unit, seconds, unit_of
 
 def load(path: str | os.PathLike, *, length_unit_m: Any = 0.0, detectors: list[str] | None = None) -> Scene:
     """Reads a scene file (.toml) or a mesh (.obj .ply .stl .off).
@@ -165,6 +165,5 @@ def changed(scene: Scene, *, source: Any = None, observer: Any = None, materials
                 continue
             array = np.asarray(given, dtype=np.float64)
             rows[key] = np.ascontiguousarray(array.reshape(len(array), -1))
-        times = np.asarray(in_unit("_s", views.get("times", ())), dtype=np.float64)
-        scene._set_views(rows["sources"], rows["attitudes"], rows["observers"], times.tolist())
+        scene._set_views(rows["sources"], rows["attitudes"], rows["observers"], seconds(views.get("times", ())).tolist())
     return scene

@@ -36,3 +36,16 @@ def in_unit(key: str, value: Any) -> Any:
         return value.to_value(unit)
     except ValueError as error:  # astropy's UnitConversionError
         raise ValueError(f"{key}: expected {unit or 'a number without unit'}, found {value.unit}") from error
+
+
+def seconds(times: Any) -> Any:
+    """Times as an array of seconds: numbers and quantities as they are, dates (astropy's Time, numpy's datetime64) from
+    the first of them."""
+    import numpy as np
+
+    if hasattr(times, "mjd") and hasattr(times, "to_datetime"):
+        return np.atleast_1d((times - times.flatten()[0]).to_value("s"))
+    array = np.asarray(in_unit("_s", times))
+    if array.dtype.kind == "M":
+        array = (array - array.flat[0]) / np.timedelta64(1, "s")
+    return array.astype(float)

@@ -11,7 +11,7 @@ import pytest
 from astropy.time import Time
 
 import clray
-from clray._units import unit_of
+from clray._units import seconds, unit_of
 
 TURN_S = 37.0
 
@@ -128,7 +128,7 @@ def test_the_period_of_a_light_curve(spinning):
     fitted = clray.periods(spinning.A, terms=6, shortest_s=20, longest_s=60)
     assert fitted.attrs["period_s"] == pytest.approx(TURN_S, rel=1e-3)
     assert found.attrs["false_alarm"] < 1e-6 and found.power.dims == ("period_s",)
-    assert float(found.period_s[found.power.argmax()]) == pytest.approx(TURN_S, rel=0.05)
+    assert float(found.period_s[int(np.argmax(found.power.values))]) == pytest.approx(TURN_S, rel=0.05)
 
 
 def test_periods_of_numbers():
@@ -141,6 +141,13 @@ def test_periods_of_numbers():
     assert clray.periods(values, times * u.s, errors).attrs["period_s"] == pytest.approx(TURN_S / 2, rel=5e-4)
     both = clray.periods(values, times / 60 * u.min, errors, terms=2, shortest_s=20, longest_s=1 * u.min)
     assert both.attrs["period_s"] == pytest.approx(TURN_S, rel=5e-4)
+
+
+def test_times_are_numbers_quantities_or_dates():
+    numbers = [0.0, 1.5, 600.0]
+    dates = Time("2026-11-26T00:00:00", scale="utc") + numbers * u.s
+    for times in (numbers, numbers * u.s, np.array(numbers) / 60 * u.min, dates, dates.datetime64):
+        np.testing.assert_allclose(seconds(times), numbers, atol=1e-6)
 
 
 @pytest.mark.parametrize("given, said", [
