@@ -16,9 +16,10 @@ def periods(values: Any, times: Any = None, errors: Any = None, *, shortest_s: A
     `false_alarm` probability (of one term alone).
 
     `values`: a DataArray of a result over its views, such as result.spectrometer.A, whose times are known, or numbers
-    with `times` (s, quantities or dates). `errors` are standard errors, those of the result where nothing is given. Periods are looked for
-    from `shortest_s` (twice the mean step) to `longest_s` (the span). `terms` harmonics are fitted: a body that looks
-    alike from two sides shows half its turn with one term, and its turn with two or more.
+    with `times` (s, quantities or dates). `errors` are standard errors, such as result.spectrometer.A_error; those of
+    exact values are 0, and then all weigh alike. Periods are looked for from `shortest_s` (twice the mean step) to
+    `longest_s` (the span). `terms` harmonics are fitted: a body that looks alike from two sides shows half its turn
+    with one term, and its turn with two or more.
     """
     try:
         from astropy.timeseries import LombScargle
@@ -37,6 +38,8 @@ def periods(values: Any, times: Any = None, errors: Any = None, *, shortest_s: A
         raise ValueError(f"expected one value a time, found values of shape {y.shape} and times of shape {t.shape}: "
                          "select an observer, a variant and a band")
     dy = None if errors is None else np.asarray(errors, dtype=float)
+    if dy is not None and not dy.any():
+        dy = None
     good = np.isfinite(t) & np.isfinite(y) & (True if dy is None else np.isfinite(dy) & (dy > 0))
     t, y, dy = t[good], y[good], None if dy is None else dy[good]
     if len(t) < 2 * terms + 2 or np.ptp(t) <= 0:

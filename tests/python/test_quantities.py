@@ -125,6 +125,7 @@ def test_the_period_of_a_light_curve(spinning):
     # Five turns make a peak a fifth of the period wide. The curve is no sinusoid, and dark half of the time, so that one
     # term meets it within a twentieth of that; six follow it.
     assert found.attrs["period_s"] == pytest.approx(TURN_S, rel=0.01)
+    assert clray.periods(spinning.A, errors=spinning.A_error).attrs == found.attrs  # exact: all weigh alike
     fitted = clray.periods(spinning.A, terms=6, shortest_s=20, longest_s=60)
     assert fitted.attrs["period_s"] == pytest.approx(TURN_S, rel=1e-3)
     assert found.attrs["false_alarm"] < 1e-6 and found.power.dims == ("period_s",)
