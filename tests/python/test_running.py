@@ -77,9 +77,12 @@ def test_the_package_has_its_types():
         assert getattr(clray, name).__doc__, name
 
 
-def driver_files(tmp_path, monkeypatch, system=(), has_linker=True, packages=("pocl_binary_distribution", "ziglang")):
+def driver_files(tmp_path, monkeypatch, system=(), has=("ld", "gcc"),
+                 packages=("pocl_binary_distribution", "ziglang")):
     """What offer_pocl() makes of made-up packages and a made-up system; the folder's files, or nothing."""
     from clray import _opencl
+
+    monkeypatch.setattr(_opencl, "_GCC", ("*",) if "gcc" in has else ())
 
     for package in packages:
         (tmp_path / package).mkdir()
@@ -91,8 +94,8 @@ def driver_files(tmp_path, monkeypatch, system=(), has_linker=True, packages=("p
     for name, path in system:
         (tmp_path / "vendors" / name).write_text(path)
     (tmp_path / "bin").mkdir()
-    if has_linker:
-        (tmp_path / "bin" / "ld").write_text("")
+    if "ld" in has:
+        (tmp_path / "bin" / "ld").write_text("#!/bin/sh\necho linked $*\n")
         (tmp_path / "bin" / "ld").chmod(0o755)
     monkeypatch.syspath_prepend(tmp_path)
     monkeypatch.setenv("PATH", str(tmp_path / "bin"))
@@ -112,15 +115,22 @@ def test_pocl_of_the_system_comes_first(tmp_path, monkeypatch):
 
 
 def test_pocl_of_pip_gets_a_linker(tmp_path, monkeypatch):
-    files = driver_files(tmp_path, monkeypatch, has_linker=False)
+    files = driver_files(tmp_path, monkeypatch, has=())
     assert str(tmp_path / "ziglang" / "zig") + ' ld.lld "$@"' in files["ld"]
-    folder = os.environ["PATH"].split(os.pathsep)[-1]
+    folder = os.environ["PATH"].split(os.pathsep)[0]
     assert os.access(os.path.join(folder, "ld"), os.X_OK)
+
+
+def test_the_linker_does_without_the_libraries_of_gcc(tmp_path, monkeypatch):
+    driver_files(tmp_path, monkeypatch, has=("ld",))
+    words = ["ld", "-shared", "-o", "a b.so", "crti.o", "/usr/lib/crtn.o", "k.o", "-lgcc", "--as-needed", "-lgcc_s", "-lc"]
+    done = subprocess.run(words, check=True, capture_output=True, text=True)
+    assert done.stdout == "linked -shared -o a b.so k.o --as-needed\n"
 
 
 def test_pocl_of_pip_without_a_linker_is_left_out(tmp_path, monkeypatch):
     with pytest.warns(UserWarning, match="binutils"):
-        assert driver_files(tmp_path, monkeypatch, has_linker=False, packages=("pocl_binary_distribution",)) == {}
+        assert driver_files(tmp_path, monkeypatch, has=(), packages=("pocl_binary_distribution",)) == {}
 
 
 def test_the_code_of_the_readme_runs(tmp_path):
