@@ -23,6 +23,8 @@
 #include "stage/scatter.cl"
 #include "stage/path.cl"
 #include "stage/packet.cl"
+#include "stage/packet_points.cl"
+#include "stage/packet_item.cl"
 
 /// Runs the work-items first_item … first_item + items - 1 of a block of points, first_point … first_point + points - 1
 /// of every replicate. The number of an item stands for its view (a place in `asked`), pixel, replicate and part; the

@@ -1,18 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Packets: rays of a beam that start near each other meet the body together. A work-item carries points of all
-// replicates that are neighbours in the unit square, puts them in the order of their places in the beam, and cuts that
-// order into packets of up to 16 rays that are no wider than the beam's points and the body's faces make worth while.
-// Which ray hits what has the same bits as for a ray alone (stage/intersect.cl): the walk hands out every leaf that one
-// of them touches, and the fp64 test of triangles is that of shape/triangle.cl, four rays at a time.
+// Packets: up to 16 rays of one direction that start near each other meet the body together. Which ray hits what has
+// the same bits as for a ray alone (stage/intersect.cl): the walk hands out every leaf that one of them touches, and
+// the fp64 test of triangles is that of shape/triangle.cl, four rays at a time. Packets of shadow rays ask only whether
+// anything is hit.
 #ifndef CLRAY_PACKET_CL
 #define CLRAY_PACKET_CL
 
 #if CLRAY_PACKET
 
 #define CLRAY_PACKET_RAYS 16u
-#define CLRAY_PACKET_FEW 4u      // rays that go alone rather than as a packet are fewer
-#define CLRAY_PACKET_CELLS 256u  // points of each replicate that a work-item carries, at most
-#define CLRAY_PACKET_ITEM (CLRAY_PACKET_RAYS * CLRAY_PACKET_CELLS)
+#define CLRAY_PACKET_FEW 4u  // rays that go alone rather than as a packet are fewer
 
 /// Rays of a packet and what they have hit so far. Coordinates of origins as in triangle_permute().
 typedef struct Packet {
@@ -21,6 +18,7 @@ typedef struct Packet {
   Ray ray[CLRAY_PACKET_RAYS];
   Hit hit[CLRAY_PACKET_RAYS];
   u32 rays;  // those after it stand where the first does and hit nothing
+  u32 any;   // a ray that has hit something looks for nothing else
   // The rectangle across the rays that they start in, in the frame of shape/triangle.cl: its middle as a point, half
   // its sizes, and a bound of what rounding may move a vertex across.
   vec3 middle;
@@ -37,9 +35,10 @@ static double4 products_difference4(double4 a, double4 b, double4 c, double4 d) 
 
 /// Tests a primitive against ray k of a packet alone.
 static void packet_test_one(const Buffers* g, Packet* p, u32 k, u32 index) {
-  const LocalRay placed = local_ray(p->ray[k].o, p->ray[k].d, 0u);
+  if (index == p->ray[k].skip_primitive) return;
+  const LocalRay placed = local_ray(p->ray[k].o, p->ray[k].d, p->ray[k].skip_plane);
   test_primitive(g, &placed, index, 0u, &p->hit[k]);
-  p->t[k] = p->hit[k].t;
+  p->t[k] = p->any && p->hit[k].primitive != 0xffffffffu ? -INFINITY : p->hit[k].t;
 }
 
 #if CLRAY_TRIANGLES
@@ -120,6 +119,7 @@ static void packet_triangle(const Buffers* g, Packet* p, const RayShear* r, u32 
     vstore4(ok, 0, oks);
     for (u32 k = 0; k < 4u; ++k) {
       if (oks[k] == 0) continue;
+      if (index == p->ray[4u * q + k].skip_primitive) continue;
       Hit* hit = &p->hit[4u * q + k];
       if (ts[k] == hit->t && (hit->rank != 0u || primitive->id >= hit->id)) continue;
       hit->t = ts[k];
@@ -129,7 +129,7 @@ static void packet_triangle(const Buffers* g, Packet* p, const RayShear* r, u32 
       hit->plane = 0u;
       hit->rank = 0u;
       hit->weights = v3(us[k], vs[k], ws[k]);
-      p->t[4u * q + k] = ts[k];
+      p->t[4u * q + k] = p->any ? -INFINITY : ts[k];
     }
   }
 }
@@ -181,24 +181,39 @@ static bool packet_takes(const __global ClrayPrimitive* primitive) {
 }
 #endif
 
-/// Finds what each ray of a packet hits first.
-static void packet_intersect(const Buffers* g, u32 view, Packet* p) {
-  const __global ClrayView* from = g->views + view;
-  if (p->rays < CLRAY_PACKET_FEW) {
-    for (u32 k = 0; k < p->rays; ++k) intersect(g, &p->ray[k], view, 0u, &p->hit[k]);
-    return;
+/// How far along the rays of a packet a point lies beyond the start of the first.
+static f64 packet_along(const Packet* p, vec3 o) { return v3_dot(v3_sub(o, p->ray[0].o), p->ray[0].d); }
+
+/// How far across the rays of a packet a point lies from the start of the first: at least that, at most 1.8 times.
+static f64 packet_across(const Packet* p, vec3 o) {
+  return size_of(v3_fma(-packet_along(p, o), p->ray[0].d, v3_sub(o, p->ray[0].o)));
+}
+
+/// A box around the starts of all rays of a packet. Where they look for no nearest hit, all are moved back along their
+/// direction to where the first of them starts, so that the box is as narrow as the packet. Rounding moves them by a
+/// few roundings of numbers no larger than the body is and is far off: 2^-44 of these is more.
+static void packet_box(const __global ClrayView* from, const Packet* p, vec3* low, vec3* high) {
+  f64 least = 0.0;
+  for (u32 k = 1; p->any && k < p->rays; ++k) least = f64_min(least, packet_along(p, p->ray[k].o));
+  for (u32 k = 0; k < p->rays; ++k) {
+    vec3 o = p->ray[k].o;
+    if (p->any) o = v3_fma(least - packet_along(p, o), p->ray[0].d, o);
+    if (k == 0u) *low = *high = o;
+    *low = v3(f64_min(low->x, o.x), f64_min(low->y, o.y), f64_min(low->z, o.z));
+    *high = v3(f64_max(high->x, o.x), f64_max(high->y, o.y), f64_max(high->z, o.z));
   }
+  if (!p->any) return;
+  const f64 room = (size_of(*low) + size_of(*high) + 4.0 / from->box_scale) * 5.684341886080802e-14;
+  *low = v3(low->x - room, low->y - room, low->z - room);
+  *high = v3(high->x + room, high->y + room, high->z + room);
+}
+
+/// Puts the rays of a packet side by side, with nothing hit.
+static void packet_fill(Packet* p, u32 axis) {
   for (u32 k = p->rays; k < CLRAY_PACKET_RAYS; ++k) p->ray[k] = p->ray[0];
-#if CLRAY_TRIANGLES
-  const RayShear shear = triangle_shear(p->ray[0].o, p->ray[0].d);
-#endif
-  vec3 low = p->ray[0].o, high = low;
   for (u32 k = 0; k < CLRAY_PACKET_RAYS; ++k) {
-    const vec3 o = p->ray[k].o;
-    low = v3(f64_min(low.x, o.x), f64_min(low.y, o.y), f64_min(low.z, o.z));
-    high = v3(f64_max(high.x, o.x), f64_max(high.y, o.y), f64_max(high.z, o.z));
 #if CLRAY_TRIANGLES
-    const vec3 placed = triangle_permute(o, shear.axis);
+    const vec3 placed = triangle_permute(p->ray[k].o, axis);
     p->x[k] = placed.x;
     p->y[k] = placed.y;
     p->z[k] = placed.z;
@@ -206,8 +221,23 @@ static void packet_intersect(const Buffers* g, u32 view, Packet* p) {
     hit_clear(&p->hit[k]);
     p->t[k] = k < p->rays ? INFINITY : -INFINITY;
   }
+}
+
+/// Finds what each ray of a packet hits first, or (`any`) whether it hits anything.
+static void packet_intersect(const Buffers* g, u32 view, Packet* p) {
+  const __global ClrayView* from = g->views + view;
+  if (p->rays < CLRAY_PACKET_FEW) {
+    for (u32 k = 0; k < p->rays; ++k) intersect(g, &p->ray[k], view, p->any, &p->hit[k]);
+    return;
+  }
+  vec3 low, high;
+  packet_box(from, p, &low, &high);
 #if CLRAY_TRIANGLES
+  const RayShear shear = triangle_shear(p->ray[0].o, p->ray[0].d);
+  packet_fill(p, shear.axis);
   packet_frame(from, &shear, low, high, p);
+#else
+  packet_fill(p, 0u);
 #endif
   BvhWalk walk;
   u32 first, count;
@@ -231,163 +261,6 @@ static void packet_intersect(const Buffers* g, u32 view, Packet* p) {
     }
     t_max = f64_max(f64_max(far.s0, far.s1), f64_max(far.s2, far.s3));
   }
-}
-
-/// The superset sum mod 2: bit j of the result is the sum of the bits k of x of which j has no bit that k lacks. It
-/// carries a point's index to its coordinate in Sobol's second dimension, bits reversed, and back.
-static u32 superset_sum(u32 x) {
-  x ^= (x >> 1) & 0x55555555u;
-  x ^= (x >> 2) & 0x33333333u;
-  x ^= (x >> 4) & 0x0f0f0f0fu;
-  x ^= (x >> 8) & 0x00ff00ffu;
-  return x ^ ((x >> 16) & 0x0000ffffu);
-}
-
-/// What scramble_reversed() makes into numbers whose first bits are those of `bits`, as far as `mask` (of low bits, as
-/// reversed) goes.
-static u32 unscramble_reversed(u32 bits, u32 seed, u32 mask) {
-  const u32 y = reverse_bits(bits) & mask;
-  u32 x = y;
-  for (u32 known = mask; known != 0u; known >>= 2) x = y ^ (x * 0x53a22864u);
-  const u32 z = x;
-  for (u32 known = mask; known != 0u; known >>= 1) x = z ^ (x * 0x05526c56u);
-  const u32 factor = (seed >> 16) | 1u;
-  u32 inverse = factor;  // Newton's iteration doubles its 3 right bits
-  for (u32 k = 0; k < 4u; ++k) inverse *= 2u - factor * inverse;
-  x = x * inverse - seed;
-  const u32 v = x;
-  for (u32 known = mask; known != 0u; known >>= 1) x = v ^ (x * 0x3d20adeau);
-  return x & mask;
-}
-
-/// The first of the 2^(bits - a - b) indices of a block of 2^bits points from `first` on (a multiple of their number)
-/// whose first coordinate begins with the a bits of `cell_u`, the second with the b bits of `cell_v` (bits at the top
-/// of the word). They differ from it by superset_sum(n << b) << a for n = 0, 1, …
-/// In Sobol's first dimension the index is the coordinate, bits reversed. In its second the polynomial of the index's
-/// bits, taken at 1 + x, is that of the coordinate. With index = low + x^a·high that is low(1 + x) + (1 + x)^a·high(1 +
-/// x), and (1 + x)^32 is 1 up to x^31.
-static u32 first_index(const Sampler* s, u32 first, u32 a, u32 b, u32 cell_u, u32 cell_v) {
-  const u32 mask_a = (1u << a) - 1u, mask_b = (1u << b) - 1u;
-  const u32 low = unscramble_reversed(cell_u, s->words[2], mask_a);
-  u32 y = unscramble_reversed(cell_v, s->words[3], mask_b) ^ superset_sum(first | low);
-  for (u32 k = 0; k < 5u; ++k) {
-    if (((32u - a) >> k) & 1u) y ^= y << (1u << k);
-  }
-  return first | low | (superset_sum(y & mask_b) << a);
-}
-
-/// Bits 0, 2, 4, … of x, side by side.
-static u32 even_bits(u32 x) {
-  x &= 0x55555555u;
-  x = (x | (x >> 1)) & 0x33333333u;
-  x = (x | (x >> 2)) & 0x0f0f0f0fu;
-  x = (x | (x >> 4)) & 0x00ff00ffu;
-  return (x | (x >> 8)) & 0x0000ffffu;
-}
-
-/// A ray of the beam that waits for a packet: where it starts, its share, the replicate and its point.
-typedef struct BeamPoint {
-  f64 u, v, share;
-  u32 replicate, index;
-} BeamPoint;
-
-/// Draws the points of one replicate that are a work-item's.
-static void packet_points(const Buffers* g, const Sampler* s, u32 view, u32 first_point, u32 points, u32 part,
-                          u32 chunk, BeamPoint* out) {
-  const __global ClrayView* from = g->views + view;
-  const u32 cells = min(chunk, points - part * chunk);
-  const u32 bits = 31u - clz(max(points, 1u)), own_bits = 31u - clz(max(chunk, 1u));
-  const bool whole = points == 1u << bits && chunk == 1u << own_bits && (first_point & (points - 1u)) == 0u;
-  const u32 a = whole ? (bits - own_bits + 1u) / 2u : 0u, b = whole ? bits - own_bits - a : 0u;
-  u32 start = first_point + chunk * part;
-  if (whole)
-    start = first_index(s, first_point, a, b, (even_bits(part) << 1) << (31u - a),
-                        (even_bits(part >> 1) << 1) << (31u - b));
-  for (u32 n = 0; n < cells; ++n) {
-    const u32 index = whole ? start ^ (superset_sum(n << b) << a) : start + n;
-    f64 u[2] = {unit_from_bits(scramble_reversed(index, s->words[2])),
-                unit_from_bits(scramble_reversed(superset_sum(index), s->words[3]))};
-    out[n].share = 1.0;
-    if (CLRAY_STRATA && from->strips != 0u) out[n].share = strata_place(g->strata, from, u);
-    out[n].u = u[0];
-    out[n].v = u[1];
-    out[n].replicate = s->replicate;
-    out[n].index = index;
-  }
-}
-
-/// The low 12 bits of x, each followed by a free one.
-static u32 spread_bits(u32 x) {
-  x = (x | (x << 8)) & 0x00ff00ffu;
-  x = (x | (x << 4)) & 0x0f0f0f0fu;
-  x = (x | (x << 2)) & 0x33333333u;
-  return (x | (x << 1)) & 0x55555555u;
-}
-
-/// Puts points in the order of their places along Morton's curve: order[k] is the k-th.
-static void packet_sort(const BeamPoint* points, u32 count, u32* order) {
-  u32 keys[CLRAY_PACKET_ITEM], other[CLRAY_PACKET_ITEM];
-  for (u32 k = 0; k < count; ++k) {
-    keys[k] = spread_bits((u32)(points[k].u * 4096.0)) | (spread_bits((u32)(points[k].v * 4096.0)) << 1);
-    order[k] = k;
-  }
-  for (u32 pass = 0; pass < 3u; ++pass) {
-    u32 end[256] = {0};
-    for (u32 k = 0; k < count; ++k) ++end[(keys[k] >> (8u * pass)) & 255u];
-    for (u32 k = 1; k < 256u; ++k) end[k] += end[k - 1u];
-    for (u32 k = count; k-- > 0u;) other[--end[(keys[order[k]] >> (8u * pass)) & 255u]] = order[k];
-    for (u32 k = 0; k < count; ++k) order[k] = other[k];
-  }
-}
-
-/// A work-item of packets: part `part` of a block of points, up to `chunk` of them, of all replicates of a view.
-static void trace_packets(const Buffers* g, u32 view, u32 first_point, u32 points, u32 part, u32 chunk) {
-  const u32 replicates = min(g->pass->replicates, CLRAY_PACKET_RAYS);
-  const u32 cells = min(chunk, points - part * chunk);
-  const __global ClrayView* from = g->views + view;
-  Buffers own = *g;
-  own.counters += CLRAY_COUNTERS * view;
-  Tally tally[CLRAY_PACKET_RAYS];
-  Sampler sampler[CLRAY_PACKET_RAYS];
-  BeamPoint point[CLRAY_PACKET_ITEM];
-  u32 order[CLRAY_PACKET_ITEM];
-  for (u32 r = 0; r < replicates; ++r) {
-    tally[r].view = view;
-    tally[r].replicate = r;
-    tally[r].stream = 0u;
-    tally_clear(&tally[r]);
-    const Sampler s = {g->pass->key0 ^ from->key0, g->pass->key1 ^ from->key1, g->pass->epoch, r, 0u, 0u};
-    sampler[r] = s;
-    sampler_begin(&sampler[r], g->directions, first_point);
-    packet_points(&own, &sampler[r], view, first_point, points, part, chunk, point + cells * r);
-  }
-  const u32 count = cells * replicates;
-  packet_sort(point, count, order);
-  const f64 widest = f64_min(8.0 / sqrt((f64)points), 1.0 / (f64)max(g->pass->finest, 1u));
-  Packet packet;
-  for (u32 begin = 0; begin < count; begin += packet.rays) {
-    f64 low_u = 1.0, high_u = 0.0, low_v = 1.0, high_v = 0.0;
-    packet.rays = 0u;
-    while (packet.rays < CLRAY_PACKET_RAYS && begin + packet.rays < count) {
-      const BeamPoint* next = point + order[begin + packet.rays];
-      low_u = f64_min(low_u, next->u);
-      high_u = f64_max(high_u, next->u);
-      low_v = f64_min(low_v, next->v);
-      high_v = f64_max(high_v, next->v);
-      if (high_u - low_u > widest || high_v - low_v > widest) break;
-      packet.ray[packet.rays++] = primary_ray(from, next->u, next->v);
-    }
-    packet_intersect(&own, view, &packet);
-    for (u32 k = 0; k < packet.rays; ++k) {
-      const BeamPoint* start = point + order[begin + k];
-      const u32 r = start->replicate;
-      Path path = path_of(start->share);
-      sampler[r].index = start->index;
-      const i32 met = packet.hit[k].primitive != 0xffffffffu;
-      follow_path(&own, &sampler[r], &tally[r], &path, packet.ray[k], met, packet.hit[k]);
-    }
-  }
-  for (u32 r = 0; r < replicates; ++r) tally_flush(&own, &tally[r]);
 }
 
 #endif

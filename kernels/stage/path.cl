@@ -10,28 +10,28 @@ static f64 piece_length(const Buffers* g, const Tally* tally, u32 bounce, vec3 f
   return -v3_dot(v3_load(g->views[tally->view].toward), v3_sub(to, v3_load(g->pass->reference)));
 }
 
-/// Follows a path from its start; `met`: whether its first ray hits anything, and what.
-static void follow_path(const Buffers* g, Sampler* sampler, Tally* tally, Path* path, Ray ray, i32 met, Hit hit) {
-  Surface surface;
-  surface.point = ray.o;
+/// Follows a path from its start; `met`: whether its first ray hits anything, and then `surface` is what.
+static void follow_path(const Buffers* g, Sampler* sampler, Tally* tally, Path* path, Ray ray, i32 met,
+                        Surface* surface) {
+  Hit hit;
   ++tally->started;
   const u32 last = CLRAY_SCATTER ? g->pass->max_bounces : 1u;
   for (u32 bounce = 0; bounce <= last; ++bounce) {
-    const vec3 before = surface.point;
     if (!met) {
       ++tally->escaped;
-      if (bounce > 0u) record_escape(g, tally, path, shade_mirror(g, tally, path, &ray, &surface));
+      if (bounce > 0u) record_escape(g, tally, path, shade_mirror(g, tally, path, &ray, surface));
       return;
     }
-    surface = stage_surface(g, &ray, &hit);
+    const vec3 before = surface->point;
+    if (bounce > 0u) *surface = stage_surface(g, &ray, &hit);
     if (bounce == last) break;
-    path->length += piece_length(g, tally, bounce, before, surface.point);
-    record_hit(g, tally, bounce, &surface, path);
-    stage_shade(g, tally, bounce, &surface, path);
+    path->length += piece_length(g, tally, bounce, before, surface->point);
+    record_hit(g, tally, bounce, surface, path);
+    stage_shade(g, tally, bounce, surface, path);
     if (!CLRAY_SCATTER) break;
-    Scattering scattering = stage_scatter(g, sampler, bounce, &surface, path, &ray);
+    Scattering scattering = stage_scatter(g, sampler, bounce, surface, path, &ray);
     const i32 lives = stage_roulette(bounce, path, &scattering);
-    record_scatter(g, tally, bounce, &surface, path, &scattering);
+    record_scatter(g, tally, bounce, surface, path, &scattering);
     if (!lives) {
       ++tally->killed;
       return;
@@ -45,9 +45,11 @@ static void follow_path(const Buffers* g, Sampler* sampler, Tally* tally, Path* 
 static void trace_path(const Buffers* g, Sampler* sampler, Tally* tally) {
   Path path;
   Hit hit;
+  Surface surface;
   const Ray ray = stage_generate(g, sampler, tally, &path);
   const i32 met = stage_intersect(g, &ray, tally->view, &hit);
-  follow_path(g, sampler, tally, &path, ray, met, hit);
+  if (met) surface = stage_surface(g, &ray, &hit);
+  follow_path(g, sampler, tally, &path, ray, met, &surface);
 }
 
 #endif

@@ -14,14 +14,27 @@ CLRAY_FN f64 length_toward(const Buffers* g, vec3 point, vec3 o) {
   return v3_dot(o, v3_sub(point, v3_load(g->pass->reference)));
 }
 
-/// Weights toward a connection, per lane: 0 when the surface does not see it. On the first bounce of a monostatic view
-/// what is lit is seen: no shadow ray.
-CLRAY_FN i32 shade(const Buffers* g, const Surface* surface, const Path* path, u32 view, u32 bounce,
+/// Whether a lit surface faces direction o.
+CLRAY_FN i32 faces(const Surface* surface, vec3 o) {
+  return surface->lit && surface->mu > 0.0 && v3_dot(surface->normal, o) > 0.0;
+}
+
+/// Whether something hides connection c from a surface that faces it. On the first bounce of a monostatic view what is
+/// lit is seen: no shadow ray.
+CLRAY_FN i32 hides(const Buffers* g, const Surface* surface, const Path* path, u32 view, u32 bounce, u32 c,
+                   const __global ClrayConnection* connection) {
+  if (!CLRAY_SHADOW || !(connection->shadow || bounce > 0u)) return 0;
+  if (CLRAY_PACKET && bounce == 0u && c < CLRAY_HIDDEN) return (path->hidden >> c) & 1u;
+  return shadowed(g, surface, view, v3_load(connection->direction));
+}
+
+/// Weights toward connection c, per lane: 0 when the surface does not see it.
+CLRAY_FN i32 shade(const Buffers* g, const Surface* surface, const Path* path, u32 view, u32 bounce, u32 c,
                    const __global ClrayConnection* connection, Light* weights) {
   const vec3 o = v3_load(connection->direction);
-  if (!surface->lit || !(surface->mu > 0.0) || !(v3_dot(surface->normal, o) > 0.0)) return 0;
+  if (!faces(surface, o)) return 0;
   const BrdfAngles angles = brdf_angles(surface->normal, surface->toward, o);
-  if (CLRAY_SHADOW && (connection->shadow || bounce > 0u) && shadowed(g, surface, view, o)) return 0;
+  if (hides(g, surface, path, view, bounce, c, connection)) return 0;
   for (u32 lane = 0; lane < CLRAY_LANES; ++lane) {
     const f64 f = brdf_eval(lane_material(g, lane, surface->material), g->tables, angles);
     weights->lane[lane] = path->throughput.lane[lane] * (f * angles.mu_o);
@@ -36,7 +49,7 @@ static void stage_shade(const Buffers* g, Tally* tally, u32 bounce, const Surfac
   for (u32 c = 0; CLRAY_CONNECT && c < CLRAY_CONNECTIONS; ++c) {
     const __global ClrayConnection* connection = connection_of(g, tally, c);
     Light weights;
-    if (!shade(g, surface, path, tally->view, bounce, connection, &weights)) continue;
+    if (!shade(g, surface, path, tally->view, bounce, c, connection, &weights)) continue;
     const f64 out = length_toward(g, surface->point, v3_load(connection->direction));
     record_connect(g, tally, c, &weights, path->length - out, surface->point);
   }

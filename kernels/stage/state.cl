@@ -58,7 +58,10 @@ typedef struct Path {
   Light density;     // p_l over the density of the hero
   u32 delta;         // the last reflection was ideal: only a cone connects it
   u32 mirrors;       // all were
+  u32 hidden;        // packets: which connections something hides from its first surface, a bit each
 } Path;
+
+#define CLRAY_HIDDEN 32u  // connections that Path::hidden has bits for
 
 /// What became of the light that a surface received.
 typedef struct Scattering {

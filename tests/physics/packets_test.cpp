@@ -92,6 +92,26 @@ TEST_CASE("packets give the digests of rays alone: shared planes, shapes, bounce
   check_same("shadows", bounces);
 }
 
+TEST_CASE("shadow rays in packets give the digests of rays alone: soups, any size and place, several observers") {
+  const clray::Vec3 from = toward(0.6, -1.0), along_x = {1, 0, 0};
+  const auto aside = [](Scene scene, clray::Vec3 light, clray::Vec3 observer, int log2_rays) {
+    bistatic(scene, light, observer);
+    scene.observers[0].name = "one";
+    scene.observers.push_back(scene.observers[0]);
+    scene.observers[1].name = "other";
+    scene.observers[1].direction = toward(0.9, -0.2);
+    return rays(scene, log2_rays);
+  };
+  for (unsigned seed = 11; seed <= 13; ++seed)
+    check_same("soup", aside(scene_of(soup(60, 1.0, {0, 0, 0}, seed), lambert(0.5)), from, toward(1.1, 0.4), 15));
+  check_same("far away", aside(scene_of(soup(60, 1.0, {3e5, -2e5, 1e5}, 14), lambert(0.5)), from, along_x, 14));
+  check_same("small", aside(scene_of(soup(60, 1e-6, {0, 0, 0}, 15), lambert(0.5)), from, toward(2.0, 1.0), 14));
+  check_same("large", aside(scene_of(soup(60, 1e6, {0, 0, 0}, 16), lambert(0.5)), from, toward(0.7, -1.1), 14));
+  check_same("dense", aside(scene_of(soup(3000, 1.0, {0, 0, 0}, 17), lambert(0.5)), from, toward(1.4, 0.2), 16));
+  // A bumpy floor seen at a grazing angle: packets are long along their direction, and much is hidden.
+  check_same("grazing", aside(scene_of(sphere_mesh(48, 24, 1.0), lambert(0.5)), {0, 0, 1}, toward(1.55, 0.3), 15));
+}
+
 TEST_CASE("packets are taken where they may be and pay, or where they are asked for") {
   const auto in_packets = [](const Scene& scene) {
     const clray::Result result = run(scene);

@@ -152,7 +152,10 @@ TEST_CASE("a program that traces wrongly is refused") {
                 "const double4 edge = x1 * y2 + y1 * x2");
   check_refused(packets, "stage/packet.cl", "hit->weights = v3(us[k], vs[k], ws[k])",
                 "hit->weights = v3(us[k], ws[k], vs[k])");
-  check_refused(packets, "stage/packet.cl", "even_bits(part >> 1)", "even_bits(part)");
+  check_refused(packets, "stage/packet_points.cl", "even_bits(part >> 1)", "even_bits(part)");
+  packets.connections = 2;
+  check_refused(packets, "stage/packet.cl", "least - packet_along(p, o)", "0.5");
+  check_refused(packets, "stage/packet_item.cl", "of[p.rays++] = k", "of[p.rays++] = p.rays");
 }
 
 TEST_CASE("what passed is remembered for that device and program, with a checksum, and costs less than 5 ms") {
