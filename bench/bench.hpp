@@ -29,6 +29,7 @@ int sweep(const Options& options);       ///< cost of orientations
 int end(const Options& options);         ///< time to given errors, against a tracer on Embree
 int method(const Options& options);      ///< whether auto takes the quickest method
 int shots(const Options& options);       ///< first-photon shots per second
+int scaling(const Options& options);     ///< how costs grow with triangles, rays, threads, views and records
 int ray_speed(const Options& options);   ///< speed of beams, shadow rays and bounces by walk, against Embree
 
 /// Whether `name` is asked for.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// clray-bench error|end|rays|method|stability|specialise|sweep|shots: measures clray through its public interface. The
-// device is the one that CLRAY_TEST_DEVICE names, else the CPU.
+// clray-bench error|end|rays|method|scaling|stability|specialise|sweep|shots: measures clray through its public
+// interface. The device is the one that CLRAY_TEST_DEVICE names, else the CPU.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
@@ -47,6 +47,8 @@ int main(int argc, char** argv) {
   end->add_option("--device", options.devices, "as for clray (default: that of CLRAY_TEST_DEVICE, else cpu)")
       ->expected(1);
   add("shots", "first-photon shots per second", clray_bench::shots);
+  add("scaling", "how costs grow with triangles, rays, threads, orientations, bins, lanes and observers",
+      clray_bench::scaling);
   CLI::App* rays = add("rays", "speed of rays by walk, against a tracer on Embree", clray_bench::ray_speed);
   rays->add_option("--mesh", options.meshes, "a mesh as a further body; repeatable")->check(CLI::ExistingFile);
   CLI11_PARSE(app, argc, argv);
