@@ -269,7 +269,8 @@ void panel(clray::text::Plot& plot, const Axis& axis, const std::vector<double>&
 
 int scaling(const Options& options) {
   clray::text::Plot plot(options.quick ? "scaling-short.png" : "scaling.png", 1800, 900);
-  plot.line("set multiplot layout 2,4; set logscale xy; set format x '10^{%L}'; set format y '10^{%L}'");
+  plot.line("set multiplot layout 2,4; set lmargin; set rmargin; set tmargin; set bmargin; set logscale xy");
+  plot.line("set format xy '10^{%L}'; set key bottom right noopaque nobox font ',11'");
   std::string text, csv = "axis,size,load_s,prepare_s,trace_s,total_s,peak_MB,embree_tree_s,embree_peak_MB\n";
   for (const Axis& axis : axes()) {
     if (!wanted(options, axis.name)) continue;
@@ -277,7 +278,7 @@ int scaling(const Options& options) {
     std::vector<Cost> costs;
     for (const double size : sizes) {
       // The compiler's memory is not the run's: programs are built and kept before.
-      if (size <= kSmall) apart([&] { return axis.run(size, true); });
+      if (size <= kSmall) apart([&] { return axis.run(size, options.quick); });
       costs.push_back(apart([&] { return axis.run(size, options.quick); }));
       fmt::print("{} {:.0f}: prepare {} s, trace {} s, {:.0f} MB\n", axis.name, size,
                  shown(costs.back().prepare, "{:.4f}"), shown(costs.back().trace, "{:.4f}"), costs.back().memory);
