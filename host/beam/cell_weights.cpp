@@ -29,6 +29,7 @@ bool reflects(const BeamCell& cell, const ClrayMaterial& material) {
 
 double weight_of(const CellsOfView& x, const BeamCell& cell, std::size_t lane, const vec3& o) {
   if (cell.state == BeamCell::empty || !(cell.normal.z > 0.0)) return 0.0;
+  if (x.steering.counts && !x.steering.counts(x.view, cell.primitive)) return 0.0;
   const ClrayMaterial& material = material_of(x, cell, lane);
   if (!reflects(cell, material)) return 0.0;
   const vec3 n = v3_unit(cell.normal);

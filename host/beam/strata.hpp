@@ -12,6 +12,8 @@
 // contraction and clray's own functions: the same strata on every host.
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <optional>
 
 #include "beam/beams.hpp"
@@ -34,6 +36,8 @@ struct Steering {
   enum class By { area, direct, exchange } by;
   const PathRanges& paths;
   std::optional<PathBins> bins;  ///< strips of path length end at these edges
+  /// Whether what a primitive sends directly, in a view, is of interest; none: that of all is.
+  std::function<bool(std::size_t view, std::uint32_t primitive)> counts{};
 };
 
 /// The beams with their strata. Leaves a view without strata (its rectangle is then sampled evenly) for the random

@@ -19,12 +19,6 @@
 namespace clray {
 namespace {
 
-Point rotated(const std::array<double, 9>& m, const Point& x) {
-  return {{std::fma(m[0], x[0], std::fma(m[1], x[1], m[2] * x[2])),
-           std::fma(m[3], x[0], std::fma(m[4], x[1], m[5] * x[2])),
-           std::fma(m[6], x[0], std::fma(m[7], x[1], m[8] * x[2]))}};
-}
-
 /// Rotation about a unit axis by an angle (Rodrigues), by rows.
 std::array<double, 9> rotation_about(const Vec3& axis, double angle) {
   if (angle == 0.0) return {{1, 0, 0, 0, 1, 0, 0, 0, 1}};
@@ -365,36 +359,6 @@ RigidMotion part_motion(const Scene& scene, const Part& part, const Vec3& source
   const Point turned = rotated(motion.rotation, pivot);
   motion.translation = {{pivot[0] - turned[0], pivot[1] - turned[1], pivot[2] - turned[2]}};
   return motion;
-}
-
-void body_extent(const Geometry& geometry, const std::vector<RigidMotion>& motions, const Point& direction, double* low,
-                 double* high) {
-  *low = 1e300;
-  *high = -1e300;
-  for (std::size_t p = 0; p < geometry.parts.size(); ++p) {
-    const Part& part = geometry.parts[p];
-    // direction·x_body = (R·direction)·(x_part − translation)
-    const Point u = rotated(motions[p].rotation, direction);
-    const Point& t = motions[p].translation;
-    const double shift = std::fma(u[0], t[0], std::fma(u[1], t[1], u[2] * t[2]));
-    for (const Point& x : part.points) {
-      const double d = std::fma(u[0], x[0], std::fma(u[1], x[1], u[2] * x[2])) - shift;
-      *low = std::min(*low, d);
-      *high = std::max(*high, d);
-    }
-    for (std::size_t k = 0; k < part.shapes.size(); ++k) {
-      const double* d = geometry.shapes.data() + part.shapes[k];
-      const std::array<double, 9> m{{d[0], d[1], d[2], d[3], d[4], d[5], d[6], d[7], d[8]}};
-      const Point local = rotated(m, u), away{{-local[0], -local[1], -local[2]}};
-      const double origin = std::fma(u[0], d[CLRAY_SHAPE_ORIGIN],
-                                     std::fma(u[1], d[CLRAY_SHAPE_ORIGIN + 1], u[2] * d[CLRAY_SHAPE_ORIGIN + 2])) -
-                            shift;
-      const double scale = d[CLRAY_SHAPE_SCALE];
-      const int row = part.shape_rows[k];
-      *high = std::max(*high, std::fma(scale, shape_support_of(row, d + CLRAY_SHAPE_KEYS, local.data()), origin));
-      *low = std::min(*low, std::fma(-scale, shape_support_of(row, d + CLRAY_SHAPE_KEYS, away.data()), origin));
-    }
-  }
 }
 
 }  // namespace clray

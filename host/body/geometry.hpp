@@ -73,6 +73,13 @@ Geometry build_geometry(const Scene& scene, bool trees = true);
 /// Where a hinged part stands in a view.
 RigidMotion part_motion(const Scene& scene, const Part& part, const Vec3& source, const Vec3& observer);
 
+/// A matrix, by rows, times a vector.
+Point rotated(const std::array<double, 9>& matrix, const Point& x);
+
+/// Least and greatest x·direction over an analytic shape, whose numbers stand at `data` in Geometry::shapes.
+void shape_extent(const Geometry& geometry, int row, std::uint32_t data, const RigidMotion& motion,
+                  const Point& direction, double* low, double* high);
+
 /// Least and greatest x·direction over the body with its parts in place (exact up to rounding).
 void body_extent(const Geometry& geometry, const std::vector<RigidMotion>& motions, const Point& direction, double* low,
                  double* high);

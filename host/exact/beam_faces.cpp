@@ -7,16 +7,16 @@
 #include <map>
 
 #include "body/portable_tables.hpp"
+#include "exact/unsolved.hpp"
 #include "scene/tables.hpp"
 
 namespace clray {
 namespace {
 
-constexpr double kGrazing = 1e-9;        // below this sine a face is edge-on
-constexpr double kSamePlace = 1e-12;     // of the body's size: distances within it are zero
-constexpr int kSumBits = 61;             // of a face's sums
-constexpr int kLeastExponent = -900;     // of a face's area: smaller ones have no scale in fp64
-constexpr std::uint32_t kRankBits = 30;  // below the rank of a face in its plane
+constexpr double kGrazing = 1e-9;     // below this sine a face is edge-on
+constexpr double kSamePlace = 1e-12;  // of the body's size: distances within it are zero
+constexpr int kSumBits = 61;          // of a face's sums
+constexpr int kLeastExponent = -900;  // of a face's area: smaller ones have no scale in fp64
 
 /// The least power of two that is not below |x|, as an exponent.
 int exponent_above(double x) {
@@ -138,7 +138,7 @@ class Builder {
     const ClrayPrimitive& p = geometry_.primitives[primitive];
     const bool two_sided = (materials_.rows[p.material].flags & CLRAY_MATERIAL_TWO_SIDED) != 0;
     const std::uint32_t rank = side.front ? 0u : two_sided ? 1u : 2u;
-    f.order = rank << kRankBits | p.id;
+    f.order = rank << kFaceRankBits | p.id;
     const bool first = out_.faces.empty();
     out_.x0 = first ? f.box[0] : std::min(out_.x0, f.box[0]);
     out_.x1 = first ? f.box[1] : std::max(out_.x1, f.box[1]);
@@ -235,25 +235,12 @@ void set_path(const BeamFrame& frame, const vec3& source, const vec3& reference,
   f.inv_path = path > 0.0 ? std::ldexp(1.0, -exponent_above(path)) : 1.0;
 }
 
-bool made_of_polygons(const Geometry& geometry) {
-  for (const Part& part : geometry.parts) {
-    for (std::size_t k = 0; k < part.shapes.size(); ++k) {
-      const double* keys = geometry.shapes.data() + part.shapes[k] + CLRAY_SHAPE_KEYS;
-      if (!table("shape")[static_cast<std::size_t>(part.shape_rows[k])].flat) return false;
-      FlatPart flat;
-      for (std::uint32_t p = 0; p < kMostShapeParts; ++p) {
-        if (shape_flat_part(part.shape_rows[k], keys, p, &flat) && flat.round) return false;
-      }
-    }
-  }
-  return geometry.primitives.size() < (std::size_t{1} << kRankBits);
-}
-
 BeamFaces beam_faces(const Geometry& geometry, const MaterialTable& materials, const std::vector<RigidMotion>& motions,
                      const BeamSight& sight) {
   Builder builder(geometry, materials, sight);
   for (std::uint32_t i = 0; i < geometry.primitives.size(); ++i) {
     const ClrayPrimitive& p = geometry.primitives[i];
+    if (!made_of_polygons(geometry, p)) continue;  // what it may shade is not solved (unsolved.hpp)
     const RigidMotion& motion = motions[geometry.part_of_component[p.component]];
     const double* data = geometry.shapes.data() + p.data;
     if (made_of_faces(p.shape)) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The faces of a body as they are seen from one direction, that of the source or of an observer: triangles across the
 // beam that goes there with their depth, nearest first.
-// Flat parts of analytic shapes are taken as triangles too. Body frame and beam frame, metres.
+// Flat parts of analytic shapes are taken as triangles too; curved shapes are left out. Body frame and beam frame,
+// metres.
 #pragma once
 
 #include <cstdint>
@@ -55,8 +56,8 @@ struct BeamFaces : BeamFrame {
   double x0 = 0.0, x1 = 0.0, y0 = 0.0, y1 = 0.0;  ///< the rectangle around the faces
 };
 
-/// Whether all that can be hit is made of polygons, so that visibility can be solved.
-bool made_of_polygons(const Geometry& geometry);
+/// A face's number is below the rank of a face in its plane: bodies of 2^30 primitives or more are not solved.
+constexpr std::uint32_t kFaceRankBits = 30;
 
 /// From where a body is seen.
 struct BeamSight {
@@ -65,7 +66,7 @@ struct BeamSight {
   std::uint32_t view = 0;
 };
 
-/// The faces that are seen. Faces at a grazing angle below 1e-9 rad are left out.
+/// The faces that are seen where no curved shape is. Faces at a grazing angle below 1e-9 rad are left out.
 BeamFaces beam_faces(const Geometry& geometry, const MaterialTable& materials, const std::vector<RigidMotion>& motions,
                      const BeamSight& sight);
 

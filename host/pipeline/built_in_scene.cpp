@@ -171,9 +171,22 @@ ProgramContent content_of(const PassPlan& plan, bool specialised) {
   content.one_sided = has("CLRAY_ONE_SIDED");
   content.shared_planes = has("CLRAY_PLANES");
   content.packets = has("CLRAY_PACKET");
+  content.curved = has("CLRAY_CURVED");
   content.specialised = specialised;
   return content;
 }
+
+namespace {
+
+/// As if every other primitive were solved.
+void leave_half_unsolved(const Geometry& geometry, PassPlan* plan) {
+  UnsolvedPrimitives& unsolved = plan->unsolved;
+  unsolved.words = static_cast<std::uint32_t>((geometry.primitives.size() + 31) / 32);
+  unsolved.bits.assign(plan->beams.views.size() * unsolved.words, 0x55555555u);
+  plan->constants.unsolved_words = unsolved.words;
+}
+
+}  // namespace
 
 BuiltInScene built_in_scene(const ProgramContent& content) {
   Scene scene;
@@ -202,6 +215,7 @@ BuiltInScene built_in_scene(const ProgramContent& content) {
   scene.components.resize(content.components, scene.components.back());
   built.plan = plan_pass(scene, built.geometry, request_of(content, scene), false);
   part_lanes(content.lanes, &built.plan.materials);
+  if (content.curved) leave_half_unsolved(built.geometry, &built.plan);
   // Any table of directional reflectance will do, and true ones would take most of the test's time.
   for (ClrayMaterial& material : built.plan.materials.rows)
     material.reflectance = static_cast<std::uint32_t>(built.plan.materials.tables.size());

@@ -27,10 +27,11 @@ class GroupMaker {
     for (std::size_t k = 0; k < beam.faces.size(); ++k) {
       ClrayFace face = beam.faces[k];
       face.bin_scale = view.weight_scale / plan_.beams.area_m2[v];
-      face.carried = is_source(sights_, sight) && wanted_elsewhere(beam, k, v) ? 1u : 0u;
+      const bool solved = !plan_.unsolved.has(v, beam.origins[k].primitive);
+      face.carried = solved && is_source(sights_, sight) && wanted_elsewhere(beam, k, v) ? 1u : 0u;
       group->on_device.faces.push_back(face);
       for (std::size_t l = 0; l < lanes; ++l)
-        group->on_device.weights.push_back(seen ? weight(beam, k, l, source, beam.toward) : 0.0);
+        group->on_device.weights.push_back(seen && solved ? weight(beam, k, l, source, beam.toward) : 0.0);
     }
   }
 

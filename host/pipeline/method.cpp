@@ -9,6 +9,7 @@
 
 #include "clray/error.hpp"
 #include "exact/beam_faces.hpp"
+#include "exact/unsolved.hpp"
 #include "pipeline/course.hpp"
 #include "pipeline/detector/room.hpp"
 #include "scene/tables.hpp"
@@ -68,6 +69,16 @@ std::string obstacle(const Scene& scene, const DetectorSpec& detector) {
   return obstacle_to(scene, row);
 }
 
+/// The same of a body's shapes.
+std::string obstacle(const Geometry& geometry, const DetectorSpec& detector) {
+  if (geometry.primitives.size() >> kFaceRankBits != 0) return "the body has too many faces";
+  if (!any_polygons(geometry)) return "every shape is curved";
+  // What curved shapes shade would be missing in the momentum of all light.
+  if (!table_row("detector", detector.kind).connects && !all_polygons(geometry))
+    return "a curved shape is in the scene";
+  return {};
+}
+
 /// From how many directions a detector's views are solved: the source, and each observer elsewhere.
 std::size_t sights_of(const Scene& scene, const DetectorSpec& detector) {
   if (!table_row("detector", detector.kind).connects) return 1;
@@ -80,11 +91,14 @@ std::size_t sights_of(const Scene& scene, const DetectorSpec& detector) {
 /// What of a detector's light the first bounce does not bring, so that rays must find it; empty: nothing. `body` may be
 /// null where it is not known yet.
 std::string rest(const Scene& scene, const DetectorSpec& detector, const Geometry* body) {
-  if (scene.trace.max_bounces > 1 && (body == nullptr || !body->convex())) return "further bounces";
+  std::string found;
+  const auto add = [&](const char* what) { found += (found.empty() ? "" : ", ") + std::string(what); };
+  if (scene.trace.max_bounces > 1 && (body == nullptr || !body->convex())) add("further bounces");
   // Mirrors reach cones alone: rays find which.
   const bool connects = table_row("detector", detector.kind).connects;
-  if (connects && misfit(scene, [](const TableRow& model) { return !model.delta; })) return "mirrors";
-  return {};
+  if (connects && misfit(scene, [](const TableRow& model) { return !model.delta; })) add("mirrors");
+  if (body != nullptr && !all_polygons(*body)) add("curved shapes and what they may shade");
+  return found;
 }
 
 /// What solving a body so many times takes, s on one core.
@@ -156,7 +170,7 @@ MethodChoice choose_method(const Scene& scene, const Geometry& geometry, const D
   const auto points = [](const std::string& because) { return MethodChoice{PassMethod::points, because}; };
   if (t.method == Method::points) return points("asked for");
   std::string why = obstacle(scene, detector);
-  if (why.empty() && !made_of_polygons(geometry)) why = "a curved shape is in the scene";
+  if (why.empty()) why = obstacle(geometry, detector);
   const std::string sampled = why.empty() ? rest(scene, detector, &geometry) : "";
   const auto solved = [&](const std::string& because) {
     return sampled.empty() ? MethodChoice{PassMethod::exact, because}

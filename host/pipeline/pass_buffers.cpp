@@ -45,6 +45,7 @@ PassBuffers::PassBuffers(const PassPlan& plan, const Geometry& geometry) {
   blocks = all_of(own_blocks_);
   settings = all_of(own_settings_);
   strata = all_of(plan.beams.strata);
+  unsolved = all_of(plan.unsolved.bits);
   const auto& defines = plan.program.options.defines;
   const auto wide_define = defines.find("CLRAY_WIDE");  // a program without rays has none
   const bool wide_too = wide_define != defines.end() && wide_define->second == "1";

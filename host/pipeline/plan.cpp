@@ -100,6 +100,7 @@ ClrayPass constants_of(const Scene& scene, const Geometry& geometry, const PassP
   k.width = plan.request.picture.width;
   k.height = plan.request.picture.height;
   k.finest = finest_of(geometry);
+  k.unsolved_words = plan.unsolved.words;
   return k;
 }
 
@@ -159,6 +160,21 @@ SumLayout layout_of(const PassPlan& plan, std::vector<PassDetector>* detectors) 
     detector.last_block = static_cast<std::uint32_t>(layout.blocks.size());
   }
   return layout;
+}
+
+/// What of the views of an exact pass curved shapes reflect, or may hide from the source or an observer elsewhere.
+UnsolvedPrimitives unsolved_of(const PassPlan& plan, const Geometry& geometry) {
+  UnsolvedPrimitives unsolved;
+  if (all_polygons(geometry)) return unsolved;
+  for (std::size_t v = 0; v < plan.beams.views.size(); ++v) {
+    std::vector<vec3> directions{v3_load(plan.beams.views[v].toward)};
+    for (std::size_t c = 0; c < plan.traits.connections && plan.traits.connect; ++c) {
+      const ClrayConnection& to = plan.beams.connections[v * plan.traits.connections + c];
+      if (to.shadow != 0) directions.push_back(v3_load(to.direction));
+    }
+    add_unsolved(geometry, plan.motions[v], directions, &unsolved);
+  }
+  return unsolved;
 }
 
 /// The exact pass of a request's first bounce, for those of its detectors that have one.
@@ -231,21 +247,25 @@ PassPlan plan_pass(const Scene& scene, const Geometry& geometry, PassRequest req
   plan.layout = layout_of(plan, &plan.detectors);
   if (plan.request.without_rays()) {
     for (const Orientation& view : plan.request.orientations) plan.motions.push_back(motions_of(scene, geometry, view));
+    plan.unsolved = unsolved_of(plan, geometry);
   } else {
+    if (!plan.request.first_exact.empty()) {
+      plan.first = std::make_shared<FirstBounce>();
+      plan.first->plan = plan_pass(scene, geometry, first_bounce_of(plan.request), reflectances);
+      plan.first->blocks = added_blocks(plan, plan.first->plan);
+      plan.unsolved = plan.first->plan.unsolved;
+    }
     // Where the first bounce is solved, rays serve later ones, whose delays strata do not foresee.
-    const bool first = !first_is_exact(scene, plan.request, true);
-    const auto by = !plan.traits.connect ? Steering::By::area : first ? Steering::By::direct : Steering::By::exchange;
-    plan.beams = stratified(std::move(plan.beams), scene, geometry, plan.request,
-                            {plan.materials, plan.request.lanes.size(), by, plan.paths,
-                             first ? path_bins_of(plan.detectors) : std::nullopt});
+    const bool later = first_is_exact(scene, plan.request, true) && plan.traits.max_bounces > 1;
+    const auto by = !plan.traits.connect ? Steering::By::area : later ? Steering::By::exchange : Steering::By::direct;
+    Steering steering{plan.materials, plan.request.lanes.size(), by, plan.paths,
+                      later ? std::nullopt : path_bins_of(plan.detectors)};
+    if (!plan.unsolved.bits.empty())
+      steering.counts = [&](std::size_t view, std::uint32_t p) { return plan.unsolved.has(view, p); };
+    plan.beams = stratified(std::move(plan.beams), scene, geometry, plan.request, steering);
   }
   plan.constants = constants_of(scene, geometry, plan);
   plan.program = specialise(scene, geometry, plan);
-  if (!plan.request.first_exact.empty()) {
-    plan.first = std::make_shared<FirstBounce>();
-    plan.first->plan = plan_pass(scene, geometry, first_bounce_of(plan.request), reflectances);
-    plan.first->blocks = added_blocks(plan, plan.first->plan);
-  }
   return plan;
 }
 

@@ -14,6 +14,7 @@
 #include "body/lanes.hpp"
 #include "body/materials.hpp"
 #include "device/program.hpp"
+#include "exact/unsolved.hpp"
 #include "pipeline/method.hpp"
 #include "pipeline/sums.hpp"
 #include "shared/abi.h"
@@ -86,6 +87,7 @@ struct PassPlan {
   Scales scales;
   std::vector<PassDetector> detectors;
   SumLayout layout;
+  UnsolvedPrimitives unsolved;  ///< where curved shapes stand among faces that are solved; else empty
   ClrayPass constants{};
   Specialised program;
   std::shared_ptr<FirstBounce> first;  ///< of a pass whose first bounce is solved; else none

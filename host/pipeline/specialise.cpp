@@ -90,9 +90,14 @@ class Specialiser {
     const bool pushed = first_is_exact(scene_, plan_.request, false);
     define("CLRAY_SKIP_FIRST", plan_.request.mirrors || connected ? 1 : 0);
     define("CLRAY_SKIP_PUSH", pushed ? 1 : 0);
+    define("CLRAY_CURVED", plan_.unsolved.bits.empty() ? 0 : 1);
     if (!connected && !pushed) return;
     out_.kept.push_back("faces, tiles and their visible parts: the first bounce is solved");
-    if (connected) out_.left_out.push_back("connections of first hits: they are solved, rays find the rest");
+    if (!plan_.unsolved.bits.empty()) {
+      out_.kept.push_back("first hits of curved shapes and of faces that they may shade: they are not solved");
+      out_.left_out.push_back("connections of other first hits: they are solved, rays find the rest");
+    } else if (connected)
+      out_.left_out.push_back("connections of first hits: they are solved, rays find the rest");
     if (pushed) out_.left_out.push_back("push of first hits: it is solved, rays find the rest");
   }
 

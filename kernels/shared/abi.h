@@ -131,9 +131,11 @@ typedef struct ClrayPass {
   u32 replicates;
   u32 views;
   u32 max_bounces;
-  u32 width, height;  // pixels
-  u32 materials;      // columns of the material table
-  u32 finest;         // packets are no wider than 1/finest of the beam's rectangle: as wide as some faces
+  u32 width, height;   // pixels
+  u32 materials;       // columns of the material table
+  u32 finest;          // packets are no wider than 1/finest of the beam's rectangle: as wide as some faces
+  u32 unsolved_words;  // of `unsolved` in a view
+  u32 padding;
 } ClrayPass;
 
 // Shares of energy and momentum are below this on a first bounce; larger ones go to the second accumulator.
@@ -237,7 +239,7 @@ typedef struct ClraySampling {
   X(ClrayConnection, 48) \
   X(ClrayBlock, 16)      \
   X(ClrayDetector, 8)    \
-  X(ClrayPass, 80)       \
+  X(ClrayPass, 88)       \
   X(ClrayFace, 320)      \
   X(ClrayListed, 48)     \
   X(ClrayTile, 56)       \

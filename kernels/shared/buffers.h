@@ -5,9 +5,9 @@
 #define CLRAY_BUFFERS_H
 
 // What a pass reads: constants, where rays start, which views a launch is asked for, what rays are connected to, the
-// body, its surfaces, the Sobol numbers (bits reversed), the detectors with their sums and settings, and the strata of
-// the views' beams. Then what it adds to: sums at the first and the second scale, counts, and the counters of events of
-// each view.
+// body, its surfaces, the Sobol numbers (bits reversed), the detectors with their sums and settings, the strata of the
+// views' beams, and bits of the primitives whose first bounce is not solved in each view (docs/exact.md). Then what it
+// adds to: sums at the first and the second scale, counts, and the counters of events of each view.
 #define CLRAY_BUFFERS(X)                             \
   X(const CLRAY_GLOBAL ClrayPass, pass)              \
   X(const CLRAY_GLOBAL ClrayView, views)             \
@@ -24,6 +24,7 @@
   X(const CLRAY_GLOBAL ClrayBlock, blocks)           \
   X(const CLRAY_GLOBAL f64, settings)                \
   X(const CLRAY_GLOBAL ClrayStratum, strata)         \
+  X(const CLRAY_GLOBAL u32, unsolved)                \
   X(volatile CLRAY_GLOBAL i64, sums)                 \
   X(volatile CLRAY_GLOBAL i64, wide)                 \
   X(volatile CLRAY_GLOBAL u32, counts)               \

@@ -42,10 +42,17 @@ CLRAY_FN i32 shade(const Buffers* g, const Surface* surface, const Path* path, u
   return 1;
 }
 
-/// The stage: records the light that each connection receives from a surface. Of the first one it is left out where it
-/// counts elsewhere: by rays from pixels, or solved (docs/exact.md).
+/// Whether what the first surface of a path sends counts elsewhere: by rays from pixels, or solved (docs/exact.md).
+/// What curved shapes send, and faces that they may shade, is not solved.
+CLRAY_FN i32 counts_elsewhere(const Buffers* g, u32 view, u32 primitive) {
+  if (!CLRAY_SKIP_FIRST) return 0;
+  if (!CLRAY_CURVED) return 1;
+  return !(g->unsolved[view * g->pass->unsolved_words + (primitive >> 5)] >> (primitive & 31u) & 1u);
+}
+
+/// The stage: records the light that each connection receives from a surface.
 static void stage_shade(const Buffers* g, Tally* tally, u32 bounce, const Surface* surface, const Path* path) {
-  if (CLRAY_SKIP_FIRST && bounce == 0u) return;
+  if (bounce == 0u && counts_elsewhere(g, tally->view, surface->primitive)) return;
   for (u32 c = 0; CLRAY_CONNECT && c < CLRAY_CONNECTIONS; ++c) {
     const __global ClrayConnection* connection = connection_of(g, tally, c);
     Light weights;

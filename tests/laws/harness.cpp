@@ -266,7 +266,7 @@ void LawHarness::run_trial(const RandomScene& random, const Trial& trial, const 
 }
 
 void LawHarness::run_scene(std::uint64_t seed) {
-  const RandomScene random = draw_scene(seed, frames_, solved_);
+  const RandomScene random = draw_scene(seed, frames_, flat(seed));
   of_scene_.clear();
   Result combined;
   try {
@@ -295,7 +295,7 @@ std::vector<std::string> LawHarness::run() {
   if (const char* asked = std::getenv("CLRAY_LAWS_SEED")) {
     const std::uint64_t seed = std::strtoull(asked, nullptr, 10);
     const std::string folder = folder_of(std::to_string(seed));
-    write_scene(draw_scene(seed, frames_, solved_).scene, folder);
+    write_scene(draw_scene(seed, frames_, flat(seed)).scene, folder);
     fmt::print("the scene of seed {} is {}/scene.toml\n", seed, folder);
     run_scene(seed);
   } else {

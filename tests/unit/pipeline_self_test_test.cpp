@@ -45,13 +45,23 @@ ProgramContent simple(const std::string& shape, const std::string& model, const 
   return content;
 }
 
+/// The plan of a built-in scene, of which every other primitive is as if solved where the content says so.
+PassPlan plan_of(const ProgramContent& content) {
+  PassPlan plan = built_in_scene(content).plan;
+  if (content.curved) {
+    plan.program.options.defines["CLRAY_SKIP_FIRST"] = "1";
+    plan.program.options.defines["CLRAY_CURVED"] = "1";
+  }
+  return plan;
+}
+
 /// What the self-test says when `text` in kernel file `path` reads `fault` instead.
 std::string refusal(const ProgramContent& content, const std::string& path, const std::string& text,
                     const std::string& fault) {
   OpenedDevice opened = opened_cpu();
   const KernelFiles files = files_with_fault(path, text, fault);
   try {
-    run_traced_self_test(opened, built_in_scene(content).plan, true, files);
+    run_traced_self_test(opened, plan_of(content), true, files);
   } catch (const Error& error) {
     CHECK(error.code() == ErrorCode::device);
     CHECK(error.context() == opened.info.name);
@@ -119,11 +129,13 @@ TEST_CASE("programs of every kind pass") {
   contents.push_back(everything());
   contents.back().hinged = false;
   contents.back().packets = true;
+  contents.push_back(everything());
+  contents.back().curved = true;
   for (const ProgramContent& content : contents) {
     OpenedDevice opened = opened_cpu();
     const BuiltInScene built = built_in_scene(content);
     CHECK(in_packets(built.plan) == content.packets);
-    CHECK_NOTHROW(run_traced_self_test(opened, built.plan, content.specialised, KernelFiles(embedded_kernels())));
+    CHECK_NOTHROW(run_traced_self_test(opened, plan_of(content), content.specialised, KernelFiles(embedded_kernels())));
   }
 }
 
@@ -146,6 +158,9 @@ TEST_CASE("a program that traces wrongly is refused") {
   ProgramContent hinged = mesh;
   hinged.hinged = true;
   check_refused(hinged, "stage/intersect.cl", "instance->moved", "0");
+  ProgramContent curved = everything();
+  curved.curved = true;
+  check_refused(curved, "stage/shade.cl", "primitive & 31u", "(primitive ^ 1u) & 31u");
   ProgramContent packets = mesh;
   packets.packets = true;
   check_refused(packets, "stage/packet.cl", "const double4 edge = x1 * y2 - y1 * x2",
