@@ -233,9 +233,9 @@ ExactPass::ExactPass(Device& device, const PassPlan& plan, const Geometry& geome
   const double start = now();
   parts_->sights = sights_of(plan);
   parts_->bins = lay_out_bins(plan, &parts_->sights);
-  for (OpenedDevice& opened : device.impl().devices)
-    parts_->devices.push_back(
-        std::make_unique<ExactDevice>(opened, plan.program.options, exact_numbers(plan), parts_->bins));
+  parts_->devices = on_each_device(&device.impl(), [&](OpenedDevice& opened) {
+    return std::make_unique<ExactDevice>(opened, plan.program.options, exact_numbers(plan), parts_->bins);
+  });
   compile_seconds_ = now() - start;
 }
 

@@ -10,12 +10,11 @@
 
 #include "clray/device.hpp"
 #include "pipeline/course.hpp"
+#include "pipeline/device_team.hpp"
 #include "pipeline/plan.hpp"
 #include "pipeline/saved_sums.hpp"
 
 namespace clray {
-
-class DevicePass;
 
 /// When a step stops for a moment, so that what it has found can be saved.
 struct Checkpoint {
@@ -42,9 +41,6 @@ class PointRunner {
   double compile_seconds_ = 0.0;
 };
 
-/// Device passes that stay when their runner goes, for the next one of the same body.
-using KeptPass = std::vector<std::shared_ptr<DevicePass>>;
-
 /// Traces points as rays: one program and its buffers on every opened device.
 class PassRunner : public PointRunner {
  public:
@@ -58,14 +54,14 @@ class PassRunner : public PointRunner {
            const Checkpoint& checkpoint) override;
 
  private:
-  void drain(Sums* sums);
   void drain_into(OpenStep* step, std::uint64_t done);
   bool run_block(std::size_t views, std::uint32_t first_point, std::uint32_t points,
                  const std::function<bool(double)>& keep_going);
 
   const PassPlan& plan_;
   const TraceOptions& options_;
-  KeptPass devices_;
+  double start_;
+  DeviceTeam devices_;
   std::uint64_t block_points_ = kFirstPoints;  // of the next block, where sums are saved
 };
 

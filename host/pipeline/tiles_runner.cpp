@@ -275,8 +275,9 @@ TilesRunner::TilesRunner(Device& device, const PassPlan& plan, const Geometry& g
     b.offset = numbers;  // of one view
     numbers += plan.request.lanes.size() * (b.bins + 2);
   }
-  for (OpenedDevice& opened : device.impl().devices)
-    parts_->devices.push_back(std::make_unique<SampleDevice>(opened, plan.program.options, exact_numbers(plan)));
+  parts_->devices = on_each_device(&device.impl(), [&](OpenedDevice& opened) {
+    return std::make_unique<SampleDevice>(opened, plan.program.options, exact_numbers(plan));
+  });
   compile_seconds_ = now() - start;
 }
 

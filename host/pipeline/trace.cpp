@@ -56,7 +56,6 @@ class Tracer {
     const DeviceUse use(device_);
     const double start = now();
     result_.device = device_.info();
-    result_.warnings = device_.impl().notes;
     result_.seed = scene_.trace.seed;
     result_.replicates = scene_.trace.replicates;
     const Planned planned = plan_scene(kept_, scene_);
@@ -66,11 +65,11 @@ class Tracer {
     result_.seconds.bvh = now() - start;
     result_.digest = kFnvStart;
     saver_.begin(planned.plans, geometry);
-    for (std::size_t k = 0; k < planned.plans.size(); ++k) {
-      const double left = scene_.trace.time_limit_s > 0.0 ? std::max(1e-6, scene_.trace.time_limit_s - spent_) : 0.0;
-      // After an interrupt no other program is built.
-      const bool go = k == 0 || !stopped();
-      take(planned.plans[k], geometry, go ? outcome_of(planned.plans[k], geometry, kept_.pass(k), left) : cut());
+    try {
+      take_passes(planned);
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::device) throw;
+      keep_before(error);
     }
     if (!result_.partial) saver_.end();
     end(geometry, start);
@@ -78,6 +77,24 @@ class Tracer {
   }
 
  private:
+  void take_passes(const Planned& planned) {
+    const Geometry& geometry = planned.geometry;
+    for (std::size_t k = 0; k < planned.plans.size(); ++k) {
+      const double left = scene_.trace.time_limit_s > 0.0 ? std::max(1e-6, scene_.trace.time_limit_s - spent_) : 0.0;
+      // After an interrupt no other program is built.
+      const bool go = k == 0 || !stopped();
+      take(planned.plans[k], geometry, go ? outcome_of(planned.plans[k], geometry, kept_.pass(k), left) : cut());
+    }
+  }
+
+  /// Saves what was found before the last device failed, and throws its error.
+  [[noreturn]] void keep_before(const Error& error) {
+    if (!saver_.writes()) throw error;
+    saver_.save();
+    throw Error(error.code(), error.message() + "; what was found before is saved: --resume goes on from it",
+                error.context());
+  }
+
   /// Traces or solves a pass, or solves its first bounce and traces the rest.
   PassOutcome outcome_of(const PassPlan& plan, const Geometry& geometry, KeptPass* kept, double time_left_s) {
     if (plan.request.exact()) return solved(plan, geometry, time_left_s);
@@ -183,7 +200,8 @@ class Tracer {
           "faces of different materials overlap in one plane and look the same way ({}): the first in canonical "
           "order is hit; remove the others",
           text::counted(geometry.conflicts, "face")));
-    std::vector<std::string> early = std::move(result_.warnings);
+    std::vector<std::string> early = device_.impl().notes;
+    add_unique(std::move(result_.warnings), &early);
     add_warnings(scene_, ending_, lit_, &result_);
     result_.warnings.insert(result_.warnings.end(), early.begin(), early.end());
     add_unique(pass_warnings(scene_), &result_.warnings);

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// Beside faults.cpp: from the launch of this number on (CLRAY_FAULT_LAUNCH, from 1) the device of that launch has
+// failed, and none of its launches, reads and writes succeeds any more.
+#include <CL/cl.h>
+#include <dlfcn.h>
+#include <stdlib.h>
+
+#include <atomic>
+
+namespace {
+
+std::atomic<long> launches{0};
+std::atomic<cl_command_queue> broken{nullptr};
+
+template <class Function>
+Function* real(const char* name) {
+  return reinterpret_cast<Function*>(dlsym(RTLD_NEXT, name));
+}
+
+}  // namespace
+
+#pragma GCC visibility push(default)
+extern "C" {
+
+cl_int clEnqueueNDRangeKernel(cl_command_queue queue, cl_kernel kernel, cl_uint dimensions, const size_t* offset,
+                              const size_t* global, const size_t* local, cl_uint count, const cl_event* events,
+                              cl_event* event) {
+  const char* at = getenv("CLRAY_FAULT_LAUNCH");
+  if (++launches == (at != nullptr ? atol(at) : 0)) broken = queue;
+  if (queue == broken.load()) return CL_OUT_OF_RESOURCES;
+  return real<decltype(clEnqueueNDRangeKernel)>("clEnqueueNDRangeKernel")(queue, kernel, dimensions, offset, global,
+                                                                          local, count, events, event);
+}
+
+cl_int clEnqueueReadBuffer(cl_command_queue queue, cl_mem buffer, cl_bool blocking, size_t offset, size_t size,
+                           void* data, cl_uint count, const cl_event* events, cl_event* event) {
+  if (queue == broken.load()) return CL_OUT_OF_RESOURCES;
+  return real<decltype(clEnqueueReadBuffer)>("clEnqueueReadBuffer")(queue, buffer, blocking, offset, size, data, count,
+                                                                    events, event);
+}
+
+cl_int clEnqueueWriteBuffer(cl_command_queue queue, cl_mem buffer, cl_bool blocking, size_t offset, size_t size,
+                            const void* data, cl_uint count, const cl_event* events, cl_event* event) {
+  if (queue == broken.load()) return CL_OUT_OF_RESOURCES;
+  return real<decltype(clEnqueueWriteBuffer)>("clEnqueueWriteBuffer")(queue, buffer, blocking, offset, size, data,
+                                                                      count, events, event);
+}
+}
+#pragma GCC visibility pop
