@@ -107,10 +107,13 @@ void set_arguments(OpenedDevice& opened, cl::Kernel& kernel, const Arguments&...
 }
 
 /// Queues a one-dimensional launch of at least `items` work-items in groups of `group` (the kernel checks its id
-/// against the count: the last group is full). The caller fixes `group`: some drivers compile once per local size.
+/// against the count: the last group is full), or as many as the device can run of this kernel. The caller fixes
+/// `group`: some drivers compile once per local size.
 inline cl::Event launch(OpenedDevice& opened, const cl::Kernel& kernel, std::size_t items, std::size_t group) {
   return with_cl_errors(opened.info.name, [&] {
     cl::Event event;
+    const auto most = kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(opened.device);
+    group = std::clamp<std::size_t>(most, 1, group);
     const std::size_t global = (std::max<std::size_t>(items, 1) + group - 1) / group * group;
     opened.queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(global), cl::NDRange(group), nullptr, &event);
     return event;

@@ -269,7 +269,9 @@ Device::Device(Device&&) noexcept = default;
 Device& Device::operator=(Device&&) noexcept = default;
 
 const DeviceInfo& Device::info() const {
-  return const_cast<Device*>(this)->impl().devices.front().info;
+  const std::vector<OpenedDevice>& devices = const_cast<Device*>(this)->impl().devices;
+  const auto used = std::find_if(devices.begin(), devices.end(), [](const OpenedDevice& d) { return !d.left_out; });
+  return used != devices.end() ? used->info : devices.front().info;
 }
 
 Device::Impl& Device::impl() {

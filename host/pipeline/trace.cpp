@@ -55,7 +55,6 @@ class Tracer {
     result_.instants = pass_instants(scene_);
     const DeviceUse use(device_);
     const double start = now();
-    result_.device = device_.info();
     result_.seed = scene_.trace.seed;
     result_.replicates = scene_.trace.replicates;
     const Planned planned = plan_scene(kept_, scene_);
@@ -193,6 +192,7 @@ class Tracer {
     result_.stopped_by = result_.partial && stopped() ? "interrupt" : ending_.by;
     result_.seconds.trace = spent_;
     result_.seconds.total = now() - start;
+    result_.device = device_.info();  // now it is known which have failed
     check_diagnostics(result_, scene_.trace.allow_failures);
     order_results(scene_, &result_);
     if (geometry.conflicts != 0)

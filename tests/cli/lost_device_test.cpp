@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A device that fails at any one launch: the others do its share, to the same digest, and it is said. With none left
-// what was found before is saved. tests/support/device_faults.cpp makes devices fail.
+// what was found before is saved. And one that runs smaller work-groups than are asked for.
+// tests/support/device_faults.cpp makes devices fail.
 #include <doctest/doctest.h>
 
 #include <nlohmann/json.hpp>
@@ -62,5 +63,19 @@ TEST_CASE("with no device left the run ends with status 4, and resumes to the di
   const Outcome resumed = traced(scratch, "cpu", 0, {"--resume", "out"});
   CAPTURE(resumed.err);
   CHECK(resumed.status == 0);
+  CHECK(digest(scratch) == whole);
+}
+
+TEST_CASE("a device that runs smaller work-groups than are asked for is asked for those it runs") {
+  const Scratch scratch;
+  spit(scratch / "square.obj", square());
+  REQUIRE(traced(scratch, "cpu", 0).status == 0);
+  const std::string whole = digest(scratch);
+  const Outcome outcome = clray(scratch,
+                                {"--device", "cpu", "--method", "points", "--rays", "32768", "--seed", "3", "--out",
+                                 "out", "--no-plots", "--work-group", "256", "square.obj"},
+                                {std::string("LD_PRELOAD=") + CLRAY_FAULTS, "CLRAY_FAULT_GROUP=24"});
+  CAPTURE(outcome.err);
+  CHECK(outcome.status == 0);
   CHECK(digest(scratch) == whole);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Beside faults.cpp: from the launch of this number on (CLRAY_FAULT_LAUNCH, from 1) the device of that launch has
-// failed, and none of its launches, reads and writes succeeds any more.
+// Beside faults.cpp: devices with work-groups of at most CLRAY_FAULT_GROUP work-items, and such that fail. From the
+// launch of this number on (CLRAY_FAULT_LAUNCH, from 1) the device of that launch has failed, and none of its launches,
+// reads and writes succeeds any more.
 #include <CL/cl.h>
 #include <dlfcn.h>
 #include <stdlib.h>
@@ -11,6 +12,12 @@ namespace {
 
 std::atomic<long> launches{0};
 std::atomic<cl_command_queue> broken{nullptr};
+
+/// Of a work-group; 0: as many as there are.
+size_t most_items() {
+  const char* most = getenv("CLRAY_FAULT_GROUP");
+  return most != nullptr ? static_cast<size_t>(atol(most)) : 0;
+}
 
 template <class Function>
 Function* real(const char* name) {
@@ -28,8 +35,18 @@ cl_int clEnqueueNDRangeKernel(cl_command_queue queue, cl_kernel kernel, cl_uint 
   const char* at = getenv("CLRAY_FAULT_LAUNCH");
   if (++launches == (at != nullptr ? atol(at) : 0)) broken = queue;
   if (queue == broken.load()) return CL_OUT_OF_RESOURCES;
+  if (most_items() != 0 && local != nullptr && local[0] > most_items()) return CL_INVALID_WORK_GROUP_SIZE;
   return real<decltype(clEnqueueNDRangeKernel)>("clEnqueueNDRangeKernel")(queue, kernel, dimensions, offset, global,
                                                                           local, count, events, event);
+}
+
+cl_int clGetKernelWorkGroupInfo(cl_kernel kernel, cl_device_id device, cl_kernel_work_group_info name, size_t size,
+                                void* value, size_t* written) {
+  const cl_int status =
+      real<decltype(clGetKernelWorkGroupInfo)>("clGetKernelWorkGroupInfo")(kernel, device, name, size, value, written);
+  if (status == CL_SUCCESS && name == CL_KERNEL_WORK_GROUP_SIZE && value != nullptr && most_items() != 0)
+    *static_cast<size_t*>(value) = most_items();
+  return status;
 }
 
 cl_int clEnqueueReadBuffer(cl_command_queue queue, cl_mem buffer, cl_bool blocking, size_t offset, size_t size,
