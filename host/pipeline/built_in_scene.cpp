@@ -214,6 +214,7 @@ BuiltInScene built_in_scene(const ProgramContent& content) {
   // Only the first, which may be hinged, is asked for again; their number is that of the sums.
   scene.components.resize(content.components, scene.components.back());
   built.plan = plan_pass(scene, built.geometry, request_of(content, scene), false);
+  built.plan.constants.finest = 2;  // so few rays count as dense, and their shadow rays go in packets, too
   part_lanes(content.lanes, &built.plan.materials);
   if (content.curved) leave_half_unsolved(built.geometry, &built.plan);
   // Any table of directional reflectance will do, and true ones would take most of the test's time.

@@ -16,6 +16,7 @@ static Path path_of(f64 share) {
   path.density = light_even(1.0);
   path.delta = 0u;
   path.mirrors = 0u;
+  path.known = 0u;
   path.hidden = 0u;
   return path;
 }

@@ -90,12 +90,15 @@ static void trace_packets(const Buffers* g, u32 view, u32 first_point, u32 point
       hits |= 1u << k;
       met[k] = stage_surface(&own, &packet.ray[k], &packet.hit[k]);
     }
-    packet_shadows(&own, view, met, hits, width, hidden);
+    // Where rays are sparser than faces, packets of shadow rays touch more than their rays alone would.
+    const u32 dense = width * (f64)g->pass->finest < 0.25;
+    if (dense) packet_shadows(&own, view, met, hits, width, hidden);
     for (u32 k = 0; k < packet.rays; ++k) {
       const BeamPoint* start = point + order[begin + k];
       const u32 r = start->replicate;
       Path path = path_of(start->share);
-      path.hidden = hidden[k];
+      path.known = dense;
+      path.hidden = dense ? hidden[k] : 0u;
       sampler[r].index = start->index;
       follow_path(&own, &sampler[r], &tally[r], &path, packet.ray[k], (hits >> k) & 1u, &met[k]);
     }

@@ -24,7 +24,7 @@ CLRAY_FN i32 faces(const Surface* surface, vec3 o) {
 CLRAY_FN i32 hides(const Buffers* g, const Surface* surface, const Path* path, u32 view, u32 bounce, u32 c,
                    const __global ClrayConnection* connection) {
   if (!CLRAY_SHADOW || !(connection->shadow || bounce > 0u)) return 0;
-  if (CLRAY_PACKET && bounce == 0u && c < CLRAY_HIDDEN) return (path->hidden >> c) & 1u;
+  if (CLRAY_PACKET && path->known && bounce == 0u && c < CLRAY_HIDDEN) return (path->hidden >> c) & 1u;
   return shadowed(g, surface, view, v3_load(connection->direction));
 }
 

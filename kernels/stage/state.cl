@@ -58,7 +58,8 @@ typedef struct Path {
   Light density;     // p_l over the density of the hero
   u32 delta;         // the last reflection was ideal: only a cone connects it
   u32 mirrors;       // all were
-  u32 hidden;        // packets: which connections something hides from its first surface, a bit each
+  u32 known;         // packets found which connections something hides from its first surface
+  u32 hidden;        // then a bit of each
 } Path;
 
 #define CLRAY_HIDDEN 32u  // connections that Path::hidden has bits for
