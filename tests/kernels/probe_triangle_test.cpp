@@ -67,7 +67,7 @@ __kernel void probe(const __global ClrayView *views, const __global ClrayNode *n
 clray::ProgramOptions trace_options() {
   clray::ProgramOptions options;
   for (const char* off : {"SHADOW", "SCATTER", "DELTA", "ONE_SIDED", "PLANES", "INSTANCED", "WIDE", "STRATA",
-                          "ANALYTIC", "PIXELS", "MIRRORS_FIRST", "SKIP_FIRST", "CURVED"})
+                          "ANALYTIC", "PIXELS", "MIRRORS_FIRST", "SKIP_FIRST", "CURVED", "PACKET"})
     options.defines[std::string("CLRAY_") + off] = "0";
   for (const char* hook : {"hit", "connect", "scatter", "escape", "end", "flush"})
     options.defines[std::string("CLRAY_HOOK_") + hook + "(X)"] = "";
