@@ -60,8 +60,10 @@ std::string refusal(const ProgramContent& content, const std::string& path, cons
                     const std::string& fault) {
   OpenedDevice opened = opened_cpu();
   const KernelFiles files = files_with_fault(path, text, fault);
+  PassPlan plan = plan_of(content);
+  plan.program.options.optimised = false;  // the fault is in the text
   try {
-    run_traced_self_test(opened, plan_of(content), true, files);
+    run_traced_self_test(opened, plan, true, files);
   } catch (const Error& error) {
     CHECK(error.code() == ErrorCode::device);
     CHECK(error.context() == opened.info.name);
