@@ -30,6 +30,7 @@ struct Device::Impl {
     std::map<std::string, std::string> defines;   ///< capability defines: from extensions and quirks.def
     std::map<std::string, cl::Program> programs;  ///< programs built so far, by build options and source
     std::map<std::string, cl::Program> by_name;   ///< the same by program_name(), found without making a source
+    bool has_cache = false;                       ///< the driver keeps programs itself
     bool left_out = false;                        ///< it has failed, and others do its share
     std::set<std::string> passed;                 ///< self-tests that passed in this process
 

@@ -214,6 +214,7 @@ OpenedDevice open_device(const FoundDevice& found) {
       }
     }
     opened.no_optimiser = opened.defines.erase("CLRAY_HOST_NO_OPTIMISER") > 0;
+    opened.has_cache = opened.defines.erase("CLRAY_HOST_HAS_CACHE") > 0;
     // Rounding up to work-groups of at most 1024 leaves it below 65535.
     if (opened.defines.erase("CLRAY_HOST_SMALL_LAUNCHES") > 0) opened.most_items = 60 * 1024;
     if (!found.info.int64_atomics) opened.defines["CLRAY_NO_INT64_ATOMICS"] = "1";

@@ -53,7 +53,7 @@ void build(cl::Program* program, const OpenedDevice& opened, const std::string& 
 /// The program as it was kept; none if there is none, or the driver does not take it.
 std::optional<cl::Program> program_as_kept(const OpenedDevice& opened, const std::string& flags,
                                            const std::string& source) {
-  const std::optional<std::string> kept = kept_binary(opened, flags, source);
+  const std::optional<std::string> kept = opened.has_cache ? std::nullopt : kept_binary(opened, flags, source);
   if (!kept) return std::nullopt;
   try {
     const std::vector<unsigned char> bytes(kept->begin(), kept->end());
@@ -65,8 +65,18 @@ std::optional<cl::Program> program_as_kept(const OpenedDevice& opened, const std
   }
 }
 
-/// Keeps a built program, if the driver gives it.
+/// What is remembered of a program that the driver keeps.
+std::string built_before(const std::string& flags, const std::string& source) {
+  return "built\n" + flags + "\n" + source;
+}
+
+/// Keeps a built program, if the driver does not and gives it.
 void keep(const cl::Program& program, const OpenedDevice& opened, const std::string& flags, const std::string& source) {
+  if (opened.has_cache) {
+    const std::string what = built_before(flags, source);
+    if (!remembered(opened, what)) remember(opened, what);
+    return;
+  }
   try {
     const cl::Program::Binaries binaries = program.getInfo<CL_PROGRAM_BINARIES>();
     if (binaries.size() == 1 && !binaries[0].empty())
@@ -121,7 +131,9 @@ std::string program_name(const std::string& entry, const ProgramOptions& options
 
 bool program_is_kept(const OpenedDevice& opened, const std::string& entry, const ProgramOptions& options) {
   const std::string flags = build_flags(opened, options.warnings_are_errors, options.optimised);
-  return kept_binary(opened, flags, program_source(opened, entry, options)).has_value();
+  const std::string source = program_source(opened, entry, options);
+  return opened.has_cache ? remembered(opened, built_before(flags, source))
+                          : kept_binary(opened, flags, source).has_value();
 }
 
 cl::Program build_program(OpenedDevice& opened, const std::string& entry, const ProgramOptions& options) {

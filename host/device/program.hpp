@@ -58,7 +58,7 @@ cl::Program build_program(OpenedDevice& opened, const std::string& entry, const 
 cl::Program build_source(OpenedDevice& opened, const std::string& entry, const std::string& source,
                          bool warnings_are_errors, bool optimised = true);
 
-/// Whether the program that build_program would make is kept from earlier.
+/// Whether the program that build_program would make is kept from earlier, here or by the driver.
 bool program_is_kept(const OpenedDevice& opened, const std::string& entry, const ProgramOptions& options);
 
 /// The options given to the OpenCL compiler.

@@ -79,6 +79,7 @@ TEST_CASE("what others could have written is not remembered") {
 TEST_CASE(
     "built programs are kept for one device, driver, flags and text; what a driver does not take is built again") {
   OpenedDevice opened = clray::test::opened_cpu();
+  opened.has_cache = false;  // as of a driver that keeps nothing itself
   const OwnCache cache;
   const std::string flags = build_flags(opened, false);
   const std::string twice = "__kernel void change(__global int* x) { x[0] = 2 * x[0]; }";
@@ -102,6 +103,10 @@ TEST_CASE(
   CHECK(changed(twice) == 63);  // what is kept is what runs
   keep_binary(opened, flags, twice, "no program");
   CHECK(changed(twice) == 42);
+  opened.has_cache = true;
+  const std::string fourfold = "__kernel void change(__global int* x) { x[0] = 4 * x[0]; }";
+  CHECK(changed(fourfold) == 84);
+  CHECK_FALSE(kept_binary(opened, flags, fourfold));
 }
 
 TEST_CASE("with an unwritable kernel cache the error names it, and the environment stays as it is") {
