@@ -9,6 +9,10 @@
 #include <embree3/rtcore.h>
 #endif
 
+#ifdef __SSE__
+#include <xmmintrin.h>
+#endif
+
 #include <algorithm>
 #include <cstdint>
 
@@ -26,6 +30,24 @@ struct Floats {
 inline Floats floats(const clray::Vec3& v) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
+
+/// Subnormal numbers are zero for this thread, as Embree recommends, until it goes.
+class NoSubnormals {
+ public:
+#ifdef __SSE__
+  NoSubnormals() {
+    _mm_setcsr(before_ | 0x8040u);
+  }
+  ~NoSubnormals() {
+    _mm_setcsr(before_);
+  }
+
+ private:
+  const unsigned before_ = _mm_getcsr();
+#else
+  NoSubnormals() {}
+#endif
+};
 
 /// The triangles of a mesh as Embree holds them.
 class EmbreeBody {

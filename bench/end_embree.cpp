@@ -17,10 +17,6 @@
 #include "embree_body.hpp"
 #include "support/scenes.hpp"
 
-#ifdef __SSE__
-#include <xmmintrin.h>
-#endif
-
 namespace clray_bench {
 
 using clray::now;
@@ -184,15 +180,9 @@ class Tracer {
   static void run(const Points& points, unsigned threads, const Work& work) {
     std::atomic<std::uint32_t> next{0};
     const auto take = [&](unsigned thread) {
-#ifdef __SSE__
-      const unsigned before = _mm_getcsr();
-      _mm_setcsr(before | 0x8040u);  // subnormal numbers are zero, as Embree recommends
-#endif
+      const NoSubnormals scope;
       for (std::uint32_t first; (first = next.fetch_add(kChunk)) < points.packets;)
         work(thread, first, std::min(first + kChunk, points.packets));
-#ifdef __SSE__
-      _mm_setcsr(before);
-#endif
     };
     std::vector<std::thread> others;
     for (unsigned k = 1; k < threads; ++k) others.emplace_back(take, k);

@@ -12,10 +12,6 @@
 
 #include "embree_body.hpp"
 
-#ifdef __SSE__
-#include <xmmintrin.h>
-#endif
-
 namespace clray_bench {
 
 using clray::now;
@@ -70,9 +66,7 @@ class Tracer : public PathRival {
     std::atomic<std::uint32_t> next{0};
     std::atomic<std::uint64_t> rays{0}, hits{0};
     const auto work = [&] {
-#ifdef __SSE__
-      _mm_setcsr(_mm_getcsr() | 0x8040u);  // subnormal numbers are zero, as Embree recommends
-#endif
+      const NoSubnormals scope;
       PathRun own;
       for (std::uint32_t first; (first = next.fetch_add(kChunk)) < packets;) {
         for (std::uint32_t p = first; p < std::min(first + kChunk, packets); ++p) {
@@ -108,9 +102,7 @@ class Tracer : public PathRival {
     edge_v_ = (high[1] - low[1]) * v;
   }
 
-  Floats start(float x, float y) const {
-    return corner_ + x * edge_u_ + y * edge_v_;
-  }
+  Floats start(float x, float y) const { return corner_ + x * edge_u_ + y * edge_v_; }
 
   static RTCIntersectContext context_of(bool coherent) {
     RTCIntersectContext context;

@@ -60,12 +60,13 @@ std::size_t DeviceTeam::alive() const {
       std::count_if(members_.begin(), members_.end(), [](const Member& m) { return m.pass != nullptr; }));
 }
 
-void DeviceTeam::lose(Member* member, const Error& error) {
-  if (error.code() != ErrorCode::device || alive() == 1) throw error;
+bool DeviceTeam::others_take_over(Member* member, const Error& error) {
+  if (error.code() != ErrorCode::device || alive() == 1) return false;
   leave_out(&impl_, member->opened, error);
   member->pass.reset();
   orphans_.insert(orphans_.end(), member->undrained.begin(), member->undrained.end());
   member->undrained.clear();
+  return true;
 }
 
 template <class Act>
@@ -75,7 +76,7 @@ void DeviceTeam::each(const Act& act) {
     try {
       act(&member);
     } catch (const Error& error) {
-      lose(&member, error);
+      if (!others_take_over(&member, error)) throw;
     }
   }
 }
@@ -137,18 +138,15 @@ void DeviceTeam::work(Member* member, Task* task) {
       if (!task->keep_going(std::min(1.0, end / static_cast<double>(std::max<std::uint64_t>(task->source.items(), 1)))))
         task->go = false;
     }
+  } catch (const Error& error) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (others_take_over(member, error)) return;
+    task->failure = std::current_exception();
+    task->go = false;
   } catch (...) {
     const std::lock_guard<std::mutex> lock(mutex_);
-    try {
-      try {
-        throw;
-      } catch (const Error& error) {
-        lose(member, error);
-      }
-    } catch (...) {
-      task->failure = std::current_exception();
-      task->go = false;
-    }
+    task->failure = std::current_exception();
+    task->go = false;
   }
 }
 

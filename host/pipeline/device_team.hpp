@@ -76,8 +76,9 @@ class DeviceTeam {
   bool run(Task* task);
   void work(Member* member, Task* task);
   void trace(Member* member, const Slice& slice);
-  /// Its slices are for others to do. Throws the error if there is nobody else.
-  void lose(Member* member, const Error& error);
+  /// Leaves out a member that failed; its slices are for others. False where there is nobody else, or it is no failure
+  /// of a device.
+  bool others_take_over(Member* member, const Error& error);
   /// Calls `act` of every member; those where it fails are lost.
   template <class Act>
   void each(const Act& act);
