@@ -29,22 +29,35 @@ Carrier::Carrier(const BeamFaces& lit, const BeamFaces& seen) : from_(lit), to_(
   }
 }
 
-ClrayPiece Carrier::carry(const ClrayPiece& piece) const {
-  const auto there = static_cast<std::uint32_t>(seen_[piece.face]);
-  const ClrayFace &f = from_.faces[piece.face], &t = to_.faces[there];
-  // A step across the light's beam is a step over the face, and that is one across the other beam.
+ClrayCarried Carrier::steps(std::uint32_t face) const {
+  const ClrayFace& f = from_.faces[face];
+  // A step across the first beam is a step over the face, and that is one across the other beam.
   const vec3 step_x = v3_fma(f.slope_x, from_.toward, from_.axis_x),
              step_y = v3_fma(f.slope_y, from_.toward, from_.axis_y);
-  const double xx = v3_dot(step_x, to_.axis_x), xy = v3_dot(step_y, to_.axis_x);
-  const double yx = v3_dot(step_x, to_.axis_y), yy = v3_dot(step_y, to_.axis_y);
+  ClrayCarried c{};
+  c.xx = v3_dot(step_x, to_.axis_x);
+  c.xy = v3_dot(step_y, to_.axis_x);
+  c.yx = v3_dot(step_x, to_.axis_y);
+  c.yy = v3_dot(step_y, to_.axis_y);
+  c.there = seen_[face] < 0 ? CLRAY_NOT_THERE : static_cast<std::uint32_t>(seen_[face]);
+  return c;
+}
+
+double carried_error(const ClrayCarried& c, double size) {
+  return kRounding * size * (1.0 + std::max(std::fabs(c.xx) + std::fabs(c.xy), std::fabs(c.yx) + std::fabs(c.yy)));
+}
+
+ClrayPiece Carrier::carry(const ClrayPiece& piece) const {
+  const ClrayCarried c = steps(piece.face);
+  const ClrayFace &f = from_.faces[piece.face], &t = to_.faces[c.there];
   ClrayPiece out = piece;
-  out.face = there;
+  out.face = c.there;
   for (std::uint32_t k = 0; k < piece.corners; ++k) {
     const double dx = piece.x[k] - f.x[0], dy = piece.y[k] - f.y[0];
-    out.x[k] = std::fma(xx, dx, std::fma(xy, dy, t.x[0]));
-    out.y[k] = std::fma(yx, dx, std::fma(yy, dy, t.y[0]));
+    out.x[k] = std::fma(c.xx, dx, std::fma(c.xy, dy, t.x[0]));
+    out.y[k] = std::fma(c.yx, dx, std::fma(c.yy, dy, t.y[0]));
   }
-  out.off = kRounding * from_.size * (1.0 + std::max(std::fabs(xx) + std::fabs(xy), std::fabs(yx) + std::fabs(yy)));
+  out.off = carried_error(c, from_.size);
   return out;
 }
 

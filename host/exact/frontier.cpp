@@ -8,23 +8,28 @@
 namespace clray {
 namespace {
 
-constexpr std::uint32_t kMostLevels = 40;  // of cuts: smaller tiles are within the rounding of corners
+constexpr std::uint32_t kMostLevels = 41;  // the whole is the first: smaller tiles are within the rounding of corners
 
 }  // namespace
 
-Frontier::Frontier(const BeamFaces& beam, std::function<bool(std::uint32_t)> shines)
-    : seen_(beam), shines_(std::move(shines)) {
-  std::vector<std::uint32_t> all(beam.faces.size());
-  std::iota(all.begin(), all.end(), 0u);
-  if (!all.empty()) add({beam.x0, beam.x1, beam.y0, beam.y1}, all, 0, &mixed_);
+Frontier::Frontier(const BeamFaces& beam, const Shadows* shadows, std::function<bool(std::uint32_t)> shines)
+    : seen_(beam), shadows_(shadows), shines_(std::move(shines)) {
+  Tile all;
+  all.faces.resize(beam.faces.size());
+  std::iota(all.faces.begin(), all.faces.end(), 0u);
+  if (shadows != nullptr) all.blockers = shadows->blockers();
+  if (!all.faces.empty()) add({beam.x0, beam.x1, beam.y0, beam.y1}, all, &mixed_);
 }
 
-void Frontier::add(const Rectangle& at, const std::vector<std::uint32_t>& faces, std::uint32_t level,
-                   std::vector<Tile>* mixed) {
-  Tile tile{at, {}, level};
-  seen_.keep(at, faces, &tile.faces);
-  if (std::none_of(tile.faces.begin(), tile.faces.end(), shines_)) return;
-  const bool covered = tile.faces.size() == 1 && seen_.covers(tile.faces.front(), at);
+/// Adds a part of a tile, where anything that shines may be seen in it.
+void Frontier::add(const Rectangle& at, const Tile& whole, std::vector<Tile>* mixed) {
+  Tile tile{at, {}, {}, whole.level + 1};
+  seen_.keep(at, whole.faces, &tile.faces);
+  std::vector<std::uint32_t> shining;
+  std::copy_if(tile.faces.begin(), tile.faces.end(), std::back_inserter(shining), shines_);
+  if (shining.empty()) return;
+  if (shadows_ != nullptr && !shadows_->keep(at, shining, whole.blockers, &tile.blockers)) return;
+  const bool covered = tile.faces.size() == 1 && tile.blockers.empty() && seen_.covers(tile.faces.front(), at);
   (covered ? &covered_ : mixed)->push_back(std::move(tile));
 }
 
@@ -40,7 +45,7 @@ bool Frontier::cut(const std::vector<double>& spread, std::size_t count) {
     if (left + parts.size() >= count) break;
     const Tile& tile = mixed_[k];
     if (tile.level == kMostLevels) continue;
-    for (const Rectangle& quarter : tile.at.quarters()) add(quarter, tile.faces, tile.level + 1, &parts);
+    for (const Rectangle& quarter : tile.at.quarters()) add(quarter, tile, &parts);
     gone[k] = true;
     --left;
   }

@@ -40,6 +40,11 @@ bool face_hides(const ClrayFace& front, const ClrayFace& face, double margin) {
   return hides(&front, &face, margin, h) == CLRAY_EVERYWHERE;
 }
 
+bool face_may_hide(const ClrayFace& front, const ClrayFace& face, double margin) {
+  double h[3];
+  return hides(&front, &face, margin, h) != CLRAY_NOWHERE;
+}
+
 void exact_item_on_host(const ExactBuffers& buffers, const ExactNumbers& numbers, bool seen, std::uint32_t item,
                         std::uint32_t skip, std::vector<ClrayPiece>* lit) {
   constexpr std::uint32_t kMostWaiting = 1u << 20, kLitTogether = 1024;

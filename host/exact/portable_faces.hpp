@@ -13,6 +13,8 @@ namespace clray {
 
 /// Whether `front` hides `face` wherever both are at one place of the beam.
 bool face_hides(const ClrayFace& front, const ClrayFace& face, double margin);
+/// Whether it hides any of it there.
+bool face_may_hide(const ClrayFace& front, const ClrayFace& face, double margin);
 
 /// The buffers of exact_item() on the host.
 struct ExactBuffers {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <optional>
 #include <vector>
 
 #include "clray/error.hpp"
@@ -14,6 +15,7 @@
 #include "device/kernel_cache.hpp"
 #include "exact/beam_faces.hpp"
 #include "exact/portable_faces.hpp"
+#include "exact/shadows.hpp"
 #include "pipeline/exact_device.hpp"
 #include "pipeline/sample_device.hpp"
 #include "shared/philox.h"
@@ -28,10 +30,16 @@ BeamFrame test_frame() {
   return {v3(0.0, 0.0, 1.0), 4.0};
 }
 
+/// That of a light elsewhere.
+BeamFrame test_light() {
+  return {v3(0.48, 0.64, 0.6), 4.0};
+}
+
 /// A soup of triangles on a coarse lattice, so that many share corners, edges and planes, or lie in one place.
-std::vector<ClrayFace> soup() {
-  const BeamFrame frame = test_frame();
-  std::vector<ClrayFace> faces;
+BeamFaces soup(const BeamFrame& frame, const vec3& source) {
+  BeamFaces beam;
+  static_cast<BeamFrame&>(beam) = frame;
+  std::vector<ClrayFace>& faces = beam.faces;
   for (std::uint32_t n = 0; faces.size() < kFaces; ++n) {
     vec3 w[3];
     for (std::uint32_t k = 0; k < 3; ++k) {
@@ -42,16 +50,21 @@ std::vector<ClrayFace> soup() {
       w[k] = v3(lattice(0), lattice(1), n % 3 == 0 ? 0.25 : lattice(2));
     }
     ClrayFace f{};
-    if (!place_face(frame, w[0], w[1], w[2], &f)) continue;
-    set_path(frame, frame.toward, v3(0.0, 0.0, 0.0), &f);
+    const std::optional<FaceSide> side = place_face(frame, w[0], w[1], w[2], &f);
+    if (!side) continue;
+    set_path(frame, source, v3(0.0, 0.0, 0.0), &f);
     f.bin_scale = 0x1p50;
-    f.order = static_cast<std::uint32_t>(faces.size());
+    f.order = n;
     f.carried = n % 2;
     faces.push_back(f);
   }
   std::stable_sort(faces.begin(), faces.end(),
                    [](const ClrayFace& a, const ClrayFace& b) { return a.nearest > b.nearest; });
-  return faces;
+  for (const ClrayFace& f : faces) {
+    beam.origins.emplace_back();
+    beam.origins.back().number = f.order;
+  }
+  return beam;
 }
 
 void compare(const OpenedDevice& opened, const char* what, const std::vector<i64>& right,
@@ -124,7 +137,7 @@ Solved compared(OpenedDevice& opened, const cl::Kernel& kernel, const FaceGroup&
 /// The soup with weights, windows and the two tiles that it is solved in.
 FaceGroup test_group(const ExactNumbers& numbers) {
   FaceGroup group;
-  group.faces = soup();
+  group.faces = soup(test_frame(), test_frame().toward).faces;
   for (std::size_t k = 0; k < group.faces.size() * numbers.lanes; ++k)
     group.weights.push_back(0.25 + static_cast<double>(k % 7) / 8.0);
   const std::uint64_t row = static_cast<std::uint64_t>(numbers.lanes) * (kBins + 2);
@@ -137,6 +150,47 @@ std::vector<ClrayTile> test_tiles() {
   const BeamFrame frame = test_frame();
   return {{-1.0, 0.1, -1.0, 1.0, frame.size, frame.margin, 0, kFaces},
           {0.1, 1.0, -1.0, 1.0, frame.size, frame.margin, 0, kFaces}};
+}
+
+/// Samples a view on the host and on the device.
+void compare_samples(OpenedDevice& opened, const cl::Kernel& kernel, const ExactNumbers& numbers,
+                     const FaceGroup& group, const LightBeam& light, const SampledTiles& tiles,
+                     const ClraySampling& sampling) {
+  const std::uint32_t replicates = sampling.replicates;
+  const std::uint64_t bins = static_cast<std::uint64_t>(numbers.binnings) * numbers.lanes * (kBins + 2) * replicates;
+  std::vector<double> values(tiles.tiles.size() * replicates);
+  std::vector<i64> sums(std::size_t{3} * numbers.lanes * replicates), histogram(bins);
+  std::vector<u32> hits(bins);
+  SampleBuffers host;
+  host.faces = group.faces.data();
+  host.weights = group.weights.data();
+  host.tiles = tiles.tiles.data();
+  host.listed = tiles.listed.data();
+  host.carried = light.carried.data();
+  host.lit_faces = light.faces.data();
+  host.shaded = tiles.shaded.data();
+  host.blockers = tiles.blockers.data();
+  host.binnings = group.binnings.data();
+  host.sampling = &sampling;
+  host.values = values.data();
+  host.sums = sums.data();
+  host.bins = histogram.data();
+  host.hits = hits.data();
+  for (std::uint32_t k = 0; k < sample_items(tiles.tiles.size(), replicates); ++k)
+    sample_item_on_host(host, numbers, k);
+  SampleDevice device(opened, kernel, numbers);
+  device.begin_view(group, light);
+  const auto bits = [](const std::vector<double>& x) {
+    std::vector<i64> out(x.size());
+    std::memcpy(out.data(), x.data(), x.size() * sizeof(double));
+    return out;
+  };
+  const SampleSums found = device.sample(tiles, sampling);
+  compare(opened, "value", bits(values), bits(found.values));
+  compare(opened, "sampled sum", sums, found.moments);
+  compare(opened, "sampled bin", histogram, found.bins);
+  compare(opened, "hit", std::vector<i64>(hits.begin(), hits.end()),
+          std::vector<i64>(found.hits.begin(), found.hits.end()));
 }
 
 }  // namespace
@@ -176,39 +230,26 @@ void run_sample_self_test(OpenedDevice& opened, const std::string& source, const
                           const ExactNumbers& numbers) {
   const std::string what = "sampled\n" + source;
   if (remembered(opened, what)) return;
-  const FaceGroup group = test_group(numbers);
+  FaceGroup group = test_group(numbers);
   SampledTiles tiles;
   tiles.tiles = test_tiles();
   for (std::uint32_t f = 0; f < kFaces; ++f) tiles.listed.push_back(f);
-  constexpr std::uint32_t kReplicates = 60;
   ClraySampling sampling{};
   sampling.inv_path_per_m = 0.25;
   sampling.key0 = 0x74u;
   sampling.key1 = 0x65737453u;
-  sampling.replicates = kReplicates;
-  const std::uint64_t bins = static_cast<std::uint64_t>(numbers.binnings) * numbers.lanes * (kBins + 2) * kReplicates;
-  std::vector<double> values(tiles.tiles.size() * kReplicates);
-  std::vector<i64> sums(std::size_t{3} * numbers.lanes * kReplicates), histogram(bins);
-  std::vector<u32> hits(bins);
-  SampleBuffers host{
-      group.faces.data(), group.weights.data(), tiles.tiles.data(), tiles.listed.data(), group.binnings.data(),
-      &sampling,          values.data(),        sums.data(),        histogram.data(),    hits.data()};
+  sampling.replicates = 60;
   sampling.adds = 1;
-  for (std::uint32_t k = 0; k < sample_items(tiles.tiles.size(), kReplicates); ++k)
-    sample_item_on_host(host, numbers, k);
-  SampleDevice device(opened, kernel, numbers);
-  device.begin_view(group);
-  const auto bits = [](const std::vector<double>& x) {
-    std::vector<i64> out(x.size());
-    std::memcpy(out.data(), x.data(), x.size() * sizeof(double));
-    return out;
-  };
-  const SampleSums found = device.sample(tiles, sampling);
-  compare(opened, "value", bits(values), bits(found.values));
-  compare(opened, "sampled sum", sums, found.moments);
-  compare(opened, "sampled bin", histogram, found.bins);
-  compare(opened, "hit", std::vector<i64>(hits.begin(), hits.end()),
-          std::vector<i64>(found.hits.begin(), found.hits.end()));
+  compare_samples(opened, kernel, numbers, group, {}, tiles, sampling);
+  if (numbers.carry) {
+    const BeamFaces seen = soup(test_frame(), test_light().toward), lit = soup(test_light(), test_light().toward);
+    const Shadows shadows(seen, lit);
+    group.faces = seen.faces;
+    tiles.blockers = shadows.blockers();
+    tiles.shaded = {0, kFaces, 0, kFaces};
+    sampling.elsewhere = 1;
+    compare_samples(opened, kernel, numbers, group, {lit.faces, shadows.carried()}, tiles, sampling);
+  }
   remember(opened, what);
 }
 

@@ -18,13 +18,14 @@ namespace clray {
 namespace {
 
 // Seconds on one core, as bodies of 36 to 10^6 faces took (clray-bench method). Their ratios decide.
-constexpr double kSecondsPerFace = 8e-6;                               // of a view that is solved
-constexpr double kSecondsPerCutFace = 5e-6, kSecondsPerTile = 5e-6;    // of a view in tiles
-constexpr double kSecondsPerTreeFace = 2e-6;                           // of the tree that rays need
-constexpr double kSecondsPerRay = 0.1e-6, kSecondsPerLevel = 0.06e-6;  // and of each level of that tree
-constexpr double kTilesOfPercent = 1000.0, kRaysOfPercent = 3000.0;    // that reach 1 %
-constexpr double kTilesPower = 1.5, kRaysPower = 0.75;                 // with which errors fall (docs/error.md)
-constexpr double kSearchAndConfirm = 3.0;                              // times as many rays as the answer's
+constexpr double kSecondsPerFace = 8e-6;                                   // of a view that is solved
+constexpr double kSecondsPerCutFace = 5e-6, kSecondsPerTile = 5e-6;        // of a view in tiles
+constexpr double kSecondsPerSeenFace = 8e-6, kSecondsPerSeenTile = 50e-6;  // and of each that is not from the source
+constexpr double kSecondsPerTreeFace = 2e-6;                               // of the tree that rays need
+constexpr double kSecondsPerRay = 0.1e-6, kSecondsPerLevel = 0.06e-6;      // and of each level of that tree
+constexpr double kTilesOfPercent = 1000.0, kRaysOfPercent = 3000.0;        // that reach 1 %
+constexpr double kTilesPower = 1.5, kRaysPower = 0.75;                     // with which errors fall (docs/error.md)
+constexpr double kSearchAndConfirm = 3.0;                                  // times as many rays as the answer's
 constexpr double kMuchDearer = 10.0;
 
 /// Whether a detector's sums can be made from visible faces. What no sum of its own has reads those of others.
@@ -106,13 +107,17 @@ double seconds_to_solve(const Geometry& geometry, std::size_t times) {
   return kSecondsPerFace * static_cast<double>(geometry.primitives.size()) * static_cast<double>(times);
 }
 
-/// What tiles take to reach the target, s on one core.
-double seconds_of_tiles(const Scene& scene, const Geometry& geometry, std::size_t views) {
+/// What tiles take to reach the target, s on one core. `elsewhere`: observers that are not at the source.
+double seconds_of_tiles(const Scene& scene, const Geometry& geometry, std::size_t views, std::size_t elsewhere) {
   const double finer = 1.0 / scene.trace.target_error_percent;
   const double tiles =
       std::max(static_cast<double>(kFirstPoints), kTilesOfPercent * std::pow(finer, 1.0 / kTilesPower));
-  const double faces = kSecondsPerCutFace * static_cast<double>(geometry.primitives.size());
-  return (faces + kSecondsPerTile * tiles) * static_cast<double>(views);
+  const auto faces = static_cast<double>(geometry.primitives.size());
+  const double seen = kSecondsPerSeenFace * faces + kSecondsPerSeenTile * tiles;
+  const bool at_source = scene.observers.size() > elsewhere;
+  return (seen * static_cast<double>(elsewhere) +
+          (at_source ? kSecondsPerCutFace * faces + kSecondsPerTile * tiles : 0.0)) *
+         static_cast<double>(views);
 }
 
 /// What so many rays take, and the tree that they need.
@@ -134,7 +139,6 @@ double seconds_of_points(const Scene& scene, const Geometry& geometry, std::size
 /// Why tiles cannot find a detector's numbers; empty: they can.
 std::string obstacle_to_tiles(const Scene& scene, const Geometry& geometry, const DetectorSpec& detector) {
   if (!table_row("detector", detector.kind).connects) return detector.kind + " is not of light toward observers";
-  if (sights_of(scene, detector) > 1) return "an observer is not at the source";
   const std::string sampled = rest(scene, detector, &geometry);
   return sampled.empty() ? "" : "rays must find " + sampled;
 }
@@ -194,7 +198,8 @@ MethodChoice choose_method(const Scene& scene, const Geometry& geometry, const D
   const double seconds = seconds_to_solve(geometry, views * sights_of(scene, detector));
   const double with_rays = seconds_of_points(scene, geometry, views);
   if (t.target_error_percent > 0.0) {
-    const double with_tiles = no_tiles.empty() ? seconds_of_tiles(scene, geometry, views) : HUGE_VAL;
+    const double with_tiles =
+        no_tiles.empty() ? seconds_of_tiles(scene, geometry, views, sights_of(scene, detector) - 1) : HUGE_VAL;
     const std::string sooner = fmt::format("they reach {:g} % sooner than all is solved", t.target_error_percent);
     if (with_rays < std::min(seconds, with_tiles)) return points(sooner);
     if (with_tiles < seconds) return {PassMethod::tiles, sooner};

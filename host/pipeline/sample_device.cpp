@@ -23,12 +23,14 @@ SampleDevice::SampleDevice(OpenedDevice& device, const ProgramOptions& options, 
 SampleDevice::SampleDevice(OpenedDevice& device, const cl::Kernel& kernel, const ExactNumbers& numbers)
     : opened_(device), numbers_(numbers), kernel_(kernel) {}
 
-void SampleDevice::begin_view(const FaceGroup& group) {
+void SampleDevice::begin_view(const FaceGroup& group, const LightBeam& light) {
   check_buffer_size(opened_, static_cast<double>(sizeof(ClrayFace)) * static_cast<double>(group.faces.size()),
                     "the faces of a view", "faces");
   faces_ = make_buffer(opened_, group.faces);
   weights_ = make_buffer(opened_, group.weights);
   binnings_ = make_buffer(opened_, group.binnings);
+  lit_faces_ = make_buffer(opened_, light.faces);
+  carried_ = make_buffer(opened_, light.carried);
   bin_numbers_ = 0;
   for (const ClrayBinning& b : group.binnings) bin_numbers_ += numbers_.lanes * (b.bins + 2);
 }
@@ -42,10 +44,11 @@ SampleSums SampleDevice::sample(const SampledTiles& tiles, const ClraySampling& 
   const cl::Buffer histogram = make_zero_buffer<i64>(opened_, bins), hits = make_zero_buffer<u32>(opened_, bins);
   if (points > 0) {
     const cl::Buffer at = make_buffer(opened_, tiles.tiles), listed = make_buffer(opened_, tiles.listed);
+    const cl::Buffer shaded = make_buffer(opened_, tiles.shaded), blockers = make_buffer(opened_, tiles.blockers);
     const cl::Buffer how = make_buffer(opened_, std::vector<ClraySampling>{sampling});
     const std::size_t items = sample_items(tiles.tiles.size(), sampling.replicates);
-    set_arguments(opened_, kernel_, faces_, weights_, at, listed, binnings_, how, values, sums, histogram, hits,
-                  static_cast<cl_uint>(items));
+    set_arguments(opened_, kernel_, faces_, weights_, at, listed, carried_, lit_faces_, shaded, blockers, binnings_,
+                  how, values, sums, histogram, hits, static_cast<cl_uint>(items));
     launch(opened_, kernel_, items, kGroup);
     with_cl_errors(opened_.info.name, [&] { opened_.queue.finish(); });
   }

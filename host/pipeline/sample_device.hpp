@@ -12,10 +12,19 @@
 
 namespace clray {
 
-/// Tiles whose points are asked, each with its part of the list of faces.
+/// Tiles whose points are asked, each with its part of the list of faces and, for an observer elsewhere, of that of
+/// faces that may shade them.
 struct SampledTiles {
   std::vector<ClrayTile> tiles;
   std::vector<std::uint32_t> listed;
+  std::vector<std::uint32_t> shaded;  ///< of each tile, where its blockers begin and how many there are
+  std::vector<std::uint32_t> blockers;
+};
+
+/// The beam of the light, for a view that is not from there.
+struct LightBeam {
+  std::vector<ClrayFace> faces;
+  std::vector<ClrayCarried> carried;  ///< where each face of the view is in it
 };
 
 /// What points bring.
@@ -34,8 +43,8 @@ class SampleDevice {
   /// The same with a kernel that was built before, which is not tested.
   SampleDevice(OpenedDevice& device, const cl::Kernel& kernel, const ExactNumbers& numbers);
 
-  /// The faces of the view that is sampled next.
-  void begin_view(const FaceGroup& group);
+  /// The faces of the view that is sampled next. `light` is empty where the view is from the source.
+  void begin_view(const FaceGroup& group, const LightBeam& light);
   /// Samples every tile; the sums are empty where points add to none.
   SampleSums sample(const SampledTiles& tiles, const ClraySampling& sampling);
 
@@ -44,7 +53,7 @@ class SampleDevice {
   ExactNumbers numbers_;
   cl::Kernel kernel_;
   std::uint64_t bin_numbers_ = 0;  // of a replicate
-  cl::Buffer faces_, weights_, binnings_;
+  cl::Buffer faces_, weights_, binnings_, lit_faces_, carried_;
 };
 
 }  // namespace clray

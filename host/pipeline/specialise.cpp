@@ -76,10 +76,17 @@ class Specialiser {
     define("CLRAY_CARRY", numbers.carry ? 1 : 0);
     define("CLRAY_EXACT_STACK", kWaiting);
     define("CLRAY_TILES", numbers.tiles ? 1 : 0);
-    out_.kept.push_back("faces, tiles and their visible parts: visibility is solved");
-    if (numbers.carry) out_.kept.push_back("lit pieces carried to other views: an observer is not at the source");
-    if (!numbers.carry) out_.left_out.push_back("lit pieces carried to other views: what is lit is all that is seen");
-    out_.left_out.push_back("rays, their random numbers and replicates: nothing is sampled");
+    if (numbers.tiles) {
+      out_.kept.push_back("faces, tiles that one face covers, and points in the others");
+      if (numbers.carry)
+        out_.kept.push_back("points carried into the beam of the light: an observer is not at the source");
+      out_.left_out.push_back("rays: points of tiles see the few faces there");
+    } else {
+      out_.kept.push_back("faces, tiles and their visible parts: visibility is solved");
+      if (numbers.carry) out_.kept.push_back("lit pieces carried to other views: an observer is not at the source");
+      out_.left_out.push_back("rays, their random numbers and replicates: nothing is sampled");
+    }
+    if (!numbers.carry) out_.left_out.push_back("views from elsewhere: what is lit is all that is seen");
     if (!geometry_.trees) out_.left_out.push_back("trees: no pass has rays");
     return std::move(out_);
   }

@@ -24,12 +24,18 @@
   X(volatile CLRAY_GLOBAL u32, lit_count)
 
 // What the sampling of a view's tiles reads: faces, weights, tiles, their lists of faces, windows, and what the points
-// are for. Then what it writes: what each point brings, sums of each lane and replicate, bins, and hits of the bins.
+// are for. For an observer elsewhere: where each face is in the beam of the light, the faces of that beam, which of
+// them may shade each tile (the first and the number in the list behind). Then what it writes: what each point brings,
+// sums of each lane and replicate, bins, and hits of the bins.
 #define CLRAY_SAMPLE_BUFFERS(X)                 \
   X(const CLRAY_GLOBAL ClrayFace, faces)        \
   X(const CLRAY_GLOBAL f64, weights)            \
   X(const CLRAY_GLOBAL ClrayTile, tiles)        \
   X(const CLRAY_GLOBAL u32, listed)             \
+  X(const CLRAY_GLOBAL ClrayCarried, carried)   \
+  X(const CLRAY_GLOBAL ClrayFace, lit_faces)    \
+  X(const CLRAY_GLOBAL u32, shaded)             \
+  X(const CLRAY_GLOBAL u32, blockers)           \
   X(const CLRAY_GLOBAL ClrayBinning, binnings)  \
   X(const CLRAY_GLOBAL ClraySampling, sampling) \
   X(CLRAY_GLOBAL f64, values)                   \

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tiles that are not solved are sampled: a point of each replicate in each tile sees the face in front there. The faces
-// of a tile are few, so they are asked one after the other. What a point brings stands for the whole tile.
+// of a tile are few, so they are asked one after the other. For an observer elsewhere the point is then carried by its
+// face into the beam of the light, where the faces that may shade the tile are asked. What a point brings stands for
+// the whole tile.
 #ifndef CLRAY_EXACT_SAMPLE_CL
 #define CLRAY_EXACT_SAMPLE_CL
 
@@ -42,6 +44,56 @@ CLRAY_FN void show_face(const CLRAY_GLOBAL ClrayFace* face, u32 own, Points* p) 
     p->order[k] = seen ? order : p->order[k];
     p->face[k] = seen ? (i64)own : p->face[k];
   }
+}
+
+/// Those points in the beam of the light.
+typedef struct LitPoints {
+  f64 x[CLRAY_TOGETHER], y[CLRAY_TOGETHER], depth[CLRAY_TOGETHER], margin[CLRAY_TOGETHER];
+  i64 order[CLRAY_TOGETHER], own[CLRAY_TOGETHER], dark[CLRAY_TOGETHER];
+} LitPoints;
+
+/// A face of that beam shades the points before which it lies. Of faces in one place the first in order is lit, as it
+/// is the one that is seen. Without branches, as in show_face().
+CLRAY_FN void shade_points(const CLRAY_GLOBAL ClrayFace* face, u32 own, LitPoints* p) {
+  const f64 x0 = face->x[0], x1 = face->x[1], x2 = face->x[2], y0 = face->y[0], y1 = face->y[1], y2 = face->y[2];
+  const f64 own_margin = face->margin, depth0 = face->depth0, slope_x = face->slope_x, slope_y = face->slope_y;
+  const f64 dx0 = x1 - x0, dx1 = x2 - x1, dx2 = x0 - x2, dy0 = y1 - y0, dy1 = y2 - y1, dy2 = y0 - y2;
+  const i64 order = (i64)face->order;
+  for (u32 k = 0; k < CLRAY_TOGETHER; ++k) {
+    const f64 x = p->x[k], y = p->y[k];
+    const f64 a0 = dy0 * (x - x0), a1 = dy1 * (x - x1), a2 = dy2 * (x - x2);
+    const f64 s0 = fma(dx0, y - y0, -a0), s1 = fma(dx1, y - y1, -a1), s2 = fma(dx2, y - y2, -a2);
+    const f64 depth = fma(slope_y, y - y0, fma(slope_x, x - x0, depth0)), gap = depth - p->depth[k];
+    const f64 margin = own_margin > p->margin[k] ? own_margin : p->margin[k];
+    const u32 inside = (s0 >= 0.0) & (s1 >= 0.0) & (s2 >= 0.0) & ((i64)own != p->own[k]);
+    const u32 alike = (gap >= -margin) & (order < p->order[k]);
+    p->dark[k] = (inside & ((gap > margin) | alike)) ? 1 : p->dark[k];
+  }
+}
+
+/// Of some points of a tile those that see nothing lit see nothing.
+static void shade_tile(const Sampled* g, u32 tile, Points* seen) {
+  LitPoints p;
+  for (u32 k = 0; k < CLRAY_TOGETHER; ++k) {
+    const u32 face = seen->face[k] < 0 ? 0u : (u32)seen->face[k];
+    const CLRAY_GLOBAL ClrayCarried* carried = g->carried + face;
+    p.dark[k] = seen->face[k] < 0 || carried->there == CLRAY_NOT_THERE;
+    const CLRAY_GLOBAL ClrayFace* own = g->lit_faces + (p.dark[k] ? 0u : carried->there);
+    const f64 dx = seen->x[k] - g->faces[face].x[0], dy = seen->y[k] - g->faces[face].y[0];
+    const f64 step_x = fma(carried->xx, dx, carried->xy * dy), step_y = fma(carried->yx, dx, carried->yy * dy);
+    p.x[k] = own->x[0] + step_x;
+    p.y[k] = own->y[0] + step_y;
+    p.depth[k] = fma(own->slope_y, step_y, fma(own->slope_x, step_x, own->depth0));
+    p.margin[k] = own->margin;
+    p.order[k] = (i64)own->order;
+    p.own[k] = (i64)carried->there;
+  }
+  const u32 first = g->shaded[2u * tile], count = g->shaded[2u * tile + 1u];
+  for (u32 k = 0; k < count; ++k) {
+    const u32 blocker = g->blockers[first + k];
+    shade_points(g->lit_faces + blocker, blocker, &p);
+  }
+  for (u32 k = 0; k < CLRAY_TOGETHER; ++k) seen->face[k] = p.dark[k] ? -1 : seen->face[k];
 }
 
 CLRAY_FN f64 uniform53(u32 high, u32 low) {
@@ -93,6 +145,7 @@ static void sample_item(const Sampled* g, u32 item) {
     show_face(g->faces + own, own, &p);
   }
   const f64 area = (tile->x1 - tile->x0) * (tile->y1 - tile->y0);
+  if (CLRAY_CARRY && s->elsewhere != 0u) shade_tile(g, number, &p);
   for (u32 k = 0; k < CLRAY_TOGETHER && first + k < s->replicates; ++k) {
     f64 mean = 0.0;
     for (u32 lane = 0; lane < CLRAY_LANES && p.face[k] >= 0; ++lane)

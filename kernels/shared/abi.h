@@ -213,6 +213,16 @@ typedef struct ClrayPiece {
   u32 face, corners;
 } ClrayPiece;
 
+/// A face of one beam in another, of the light or of an observer: a step of (1, 0) across the first, by way of the
+/// face, is one of (xx, yx) across the other, and a step of (0, 1) one of (xy, yy).
+typedef struct ClrayCarried {
+  f64 xx, xy, yx, yy;
+  u32 there;  // its number in the other beam, or CLRAY_NOT_THERE
+  u32 padding;
+} ClrayCarried;
+
+#define CLRAY_NOT_THERE 0xffffffffu
+
 /// The window of a delay detector: `bins` bins from the path length first_m on. Its rows of bins begin at `offset`.
 typedef struct ClrayBinning {
   f64 first_m, per_metre;
@@ -225,7 +235,9 @@ typedef struct ClraySampling {
   f64 path_middle_m, inv_path_per_m;  // as in ClrayView
   u32 key0, key1, epoch, round;       // of the random numbers
   u32 replicates;
-  u32 adds;  // 1: points add to the sums; 0: what they bring is only noted, to find out where tiles are to be cut
+  u32 adds;       // 1: points add to the sums; 0: what they bring is only noted, to find out where tiles are to be cut
+  u32 elsewhere;  // 1: the observer is not at the source: what is seen may be in shadow
+  u32 padding;
 } ClraySampling;
 
 // Sizes, asserted in C++ here and on the device by the start-up self-test.
@@ -244,7 +256,8 @@ typedef struct ClraySampling {
   X(ClrayListed, 48)     \
   X(ClrayTile, 56)       \
   X(ClrayPiece, 128)     \
-  X(ClraySampling, 40)   \
+  X(ClrayCarried, 40)    \
+  X(ClraySampling, 48)   \
   X(ClrayBinning, 32)
 #ifdef __cplusplus
 #define CLRAY_ASSERT_SIZE(type, size) static_assert(sizeof(type) == size, "abi.h: " #type);

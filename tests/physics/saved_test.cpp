@@ -73,6 +73,7 @@ std::vector<Case> cases() {
   all.push_back({"tiles to a target", tiles, false});
   all.back().scene.trace.rays = 0;
   all.back().scene.trace.target_error_percent = 0.01;
+  all.push_back({"tiles seen from elsewhere", turning(body(Method::tiles, 14), 3)});
   all.push_back({"an exact first bounce", body(Method::exact, 15)});
   all.back().scene.trace.max_bounces = 3;
   all.push_back({"a picture", body(Method::points, 0)});
