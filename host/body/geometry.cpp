@@ -242,6 +242,7 @@ class Packer {
       for (const std::uint32_t position : tree.order) append(raw_[members[position]], members[position], used);
       append_tree(std::move(tree), static_cast<std::uint32_t>(g_.primitives.size() - members.size()), &g_.nodes);
     }
+    append_planes();
     for (std::size_t row = 0; row < used.size(); ++row) {
       if (used[row]) g_.shape_rows.push_back(static_cast<int>(row));
     }
@@ -264,14 +265,19 @@ class Packer {
       g_.parts[raw.part].shape_rows.push_back(static_cast<int>(raw.shape));
     }
     g_.shapes.insert(g_.shapes.end(), d, d + raw.size);
-    primitive.planes = CLRAY_NO_PLANES;
-    if (raw.planes != CLRAY_NO_PLANES) {
-      primitive.planes = static_cast<std::uint32_t>(g_.shapes.size());
-      g_.shapes.insert(g_.shapes.end(), planes_.begin() + raw.planes,
-                       planes_.begin() + raw.planes + CLRAY_PLANE_SIZE * parts_of(raw));
-    }
+    primitive.planes = raw.planes;
     g_.primitives.push_back(primitive);
     used[raw.shape] = true;
+  }
+
+  // Behind all shapes: where these are triangles alone, the place of one's numbers follows from its own
+  // (test_primitive() of stage/intersect.cl).
+  void append_planes() {
+    const auto base = static_cast<std::uint32_t>(g_.shapes.size());
+    g_.shapes.insert(g_.shapes.end(), planes_.begin(), planes_.end());
+    for (ClrayPrimitive& primitive : g_.primitives) {
+      if (primitive.planes != CLRAY_NO_PLANES) primitive.planes += base;
+    }
   }
 
   // A sphere about the middle of the boxes that holds every part at every hinge angle.

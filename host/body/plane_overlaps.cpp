@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kTouch = 1e-12;  // of the sizes: outlines that overlap by less only touch
 constexpr double kMostStripes = 1024.0;
+constexpr std::size_t kFew = 8;  // faces of a plane that are compared pair by pair
 
 /// A face's outline within its plane, counter-clockwise.
 struct Flat {
@@ -78,16 +79,28 @@ struct Stripe {
 
 class Sweep {
  public:
-  Sweep(const std::vector<PlaneFace>& faces, const std::array<double, 3>& normal) : faces_(faces) {
-    flats_.reserve(faces.size());
-    for (const PlaneFace& face : faces) flats_.push_back(flatten(face.outline, normal));
-    found_.shared.assign(faces.size(), 0);
-    found_.conflicting.assign(faces.size(), 0);
-    cut_into_stripes();
+  Sweep(const PlaneFace* faces, std::size_t count, const std::array<double, 3>& normal) : faces_(faces) {
+    flats_.reserve(count);
+    for (std::size_t k = 0; k < count; ++k) flats_.push_back(flatten(faces[k].outline, normal));
+    found_.shared.assign(count, 0);
+    found_.conflicting.assign(count, 0);
   }
 
   PlaneOverlaps find() {
-    std::vector<std::uint32_t> order(faces_.size());
+    if (flats_.size() > kFew) {
+      cut_into_stripes();
+      sweep();
+    } else {
+      for (std::uint32_t a = 0; a < flats_.size(); ++a) {
+        for (std::uint32_t b = a + 1; b < flats_.size(); ++b) compare(a, b);
+      }
+    }
+    return std::move(found_);
+  }
+
+ private:
+  void sweep() {
+    std::vector<std::uint32_t> order(flats_.size());
     std::iota(order.begin(), order.end(), 0u);
     std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
       return flats_[a].low[0] != flats_[b].low[0] ? flats_[a].low[0] < flats_[b].low[0] : a < b;
@@ -100,10 +113,8 @@ class Sweep {
         put(face, stripe);
       }
     }
-    return std::move(found_);
   }
 
- private:
   /// As many stripes as keep a face in about two of them.
   void cut_into_stripes() {
     double low = 1e300, high = -1e300, heights = 0.0;
@@ -199,7 +210,7 @@ class Sweep {
     }
   }
 
-  const std::vector<PlaneFace>& faces_;
+  const PlaneFace* faces_;
   std::vector<Flat> flats_;
   std::vector<Stripe> stripes_;
   double low_ = 0.0, height_ = 1.0;
@@ -208,8 +219,8 @@ class Sweep {
 
 }  // namespace
 
-PlaneOverlaps find_overlaps(const std::vector<PlaneFace>& faces, const std::array<double, 3>& normal) {
-  return Sweep(faces, normal).find();
+PlaneOverlaps find_overlaps(const PlaneFace* faces, std::size_t count, const std::array<double, 3>& normal) {
+  return Sweep(faces, count, normal).find();
 }
 
 }  // namespace clray

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -31,6 +32,7 @@ struct PlaneOverlaps {
   std::uint64_t compared = 0;     ///< pairs whose outlines were compared
 };
 
-PlaneOverlaps find_overlaps(const std::vector<PlaneFace>& faces, const std::array<double, 3>& normal);
+/// Finds them among `count` faces of a plane with this normal.
+PlaneOverlaps find_overlaps(const PlaneFace* faces, std::size_t count, const std::array<double, 3>& normal);
 
 }  // namespace clray

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numeric>
+#include <utility>
 
 namespace clray {
 namespace {
@@ -34,22 +34,26 @@ double dot(const Point3& a, const Point3& b) {
 Plane plane_of(const FaceOutline& outline) {
   Plane plane;
   // It begins at the smallest corner, so that the bits do not depend on the corner that a face starts with.
-  std::vector<Point3> p = outline.corners;
-  std::rotate(p.begin(), std::min_element(p.begin(), p.end()), p.end());
+  const std::vector<Point3>& p = outline.corners;
+  const std::size_t count = p.size();
+  const auto first = static_cast<std::size_t>(std::min_element(p.begin(), p.end()) - p.begin());
+  const Point3& origin = p[first];
+  const auto from_origin = [&](std::size_t k) {
+    const std::size_t at = first + k < count ? first + k : first + k - count;
+    return Point3{{p[at][0] - origin[0], p[at][1] - origin[1], p[at][2] - origin[2]}};
+  };
   Point3 sum{{0.0, 0.0, 0.0}};
-  for (std::size_t k = 1; k + 1 < p.size(); ++k) {
-    Point3 a, b;
-    for (int i = 0; i < 3; ++i) {
-      a[i] = p[k][i] - p[0][i];
-      b[i] = p[k + 1][i] - p[0][i];
-    }
-    for (int i = 0; i < 3; ++i) sum[i] += a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
+  for (std::size_t k = 1; k + 1 < count; ++k) {
+    const Point3 a = from_origin(k), b = from_origin(k + 1);
+    sum[0] += a[1] * b[2] - a[2] * b[1];
+    sum[1] += a[2] * b[0] - a[0] * b[2];
+    sum[2] += a[0] * b[1] - a[1] * b[0];
   }
   const double length = std::sqrt(dot(sum, sum));
   if (!(length > 0.0)) return plane;
   plane.front = kGeneric[0] * sum[0] + kGeneric[1] * sum[1] + kGeneric[2] * sum[2] > 0.0;
   for (int i = 0; i < 3; ++i) plane.normal[i] = (plane.front ? sum[i] : -sum[i]) / length + 0.0;
-  plane.offset = dot(plane.normal, p[0]);
+  plane.offset = dot(plane.normal, origin);
   for (const Point3& x : p) {
     for (const double c : x) plane.size = std::max(plane.size, std::fabs(c));
   }
@@ -68,11 +72,18 @@ class Finder {
   SharedPlanes find() {
     sort_planes();
     join_neighbours();
-    std::map<std::uint32_t, std::vector<std::uint32_t>> planes;  // by the first face of each
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> members;  // the first face of a plane, and each of its faces
     for (std::uint32_t f = 0; f < faces_.size(); ++f) {
-      if (parent_[f] != f || joined_[f]) planes[root(f)].push_back(f);
+      if (joined_[f]) members.emplace_back(root(f), f);
     }
-    for (const auto& entry : planes) sweep(entry.second);
+    std::sort(members.begin(), members.end());
+    std::vector<std::uint32_t> plane;
+    for (std::size_t k = 0; k < members.size(); ++k) {
+      plane.push_back(members[k].second);
+      if (k + 1 < members.size() && members[k + 1].first == members[k].first) continue;
+      sweep(plane);
+      plane.clear();
+    }
     std::sort(out_.faces.begin(), out_.faces.end(), [](const SharedPlane& a, const SharedPlane& b) {
       return a.primitive != b.primitive ? a.primitive < b.primitive : a.part < b.part;
     });
@@ -85,36 +96,32 @@ class Finder {
     std::uint32_t frame, face;
   };
 
-  FaceOutline outline(std::uint32_t face) const {
-    FaceOutline out;
-    source_.outline(faces_[face], &out);
-    return out;
-  }
-
   void sort_planes() {
-    std::vector<double> offsets;
+    planes_.reserve(faces_.size());
+    keys_.reserve(faces_.size());
     double size = 0.0;
-    FaceOutline face;
-    for (std::uint32_t f = 0; f < faces_.size(); ++f) {
-      source_.outline(faces_[f], &face);
-      const Plane plane = plane_of(face);
-      const double* n = plane.normal.data();
-      keys_.push_back({kGeneric[0] * n[0] + kGeneric[1] * n[1] + kGeneric[2] * n[2], faces_[f].frame, f});
-      offsets.push_back(plane.offset);
-      size = std::max(size, plane.size);
+    for (const FlatFace& face : faces_) {
+      source_.outline(face, &first_);
+      planes_.push_back(plane_of(first_));
+      size = std::max(size, planes_.back().size);
     }
-    for (std::size_t k = 0; k < keys_.size(); ++k) keys_[k].value += kGeneric[3] * offsets[k] / std::max(size, 1e-300);
+    for (std::uint32_t f = 0; f < faces_.size(); ++f) {
+      const double* n = planes_[f].normal.data();
+      const double offset = kGeneric[3] * planes_[f].offset / std::max(size, 1e-300);
+      keys_.push_back({kGeneric[0] * n[0] + kGeneric[1] * n[1] + kGeneric[2] * n[2] + offset, faces_[f].frame, f});
+    }
     std::sort(keys_.begin(), keys_.end(), [](const Key& a, const Key& b) {
       if (a.frame != b.frame) return a.frame < b.frame;
       return a.value != b.value ? a.value < b.value : a.face < b.face;
     });
   }
 
-  bool one_plane(std::uint32_t a, std::uint32_t b) const {
-    const FaceOutline first = outline(a), second = outline(b);
-    const Plane p = plane_of(first), q = plane_of(second);
-    const double tolerance = kSame * std::max(p.size, q.size);
-    return lies_on(first, q, tolerance) || lies_on(second, p, tolerance);
+  bool one_plane(std::uint32_t a, std::uint32_t b) {
+    const double tolerance = kSame * std::max(planes_[a].size, planes_[b].size);
+    source_.outline(faces_[a], &first_);
+    if (lies_on(first_, planes_[b], tolerance)) return true;
+    source_.outline(faces_[b], &first_);
+    return lies_on(first_, planes_[a], tolerance);
   }
 
   void join_neighbours() {
@@ -145,21 +152,20 @@ class Finder {
 
   /// Finds overlaps among the faces of one plane, whose coefficients are those of its first face.
   void sweep(const std::vector<std::uint32_t>& members) {
-    const Plane plane = plane_of(outline(members.front()));
-    std::vector<PlaneFace> faces;
-    for (const std::uint32_t f : members) {
-      FaceOutline own = outline(f);
-      const bool front = plane_of(own).front;
-      faces.push_back({std::move(own), front, faces_[f].material});
+    if (held_.size() < members.size()) held_.resize(members.size());  // their memory serves the next plane, too
+    for (std::size_t m = 0; m < members.size(); ++m) {
+      source_.outline(faces_[members[m]], &held_[m].outline);
+      held_[m].front = planes_[members[m]].front;
+      held_[m].material = faces_[members[m]].material;
     }
-    const PlaneOverlaps found = find_overlaps(faces, plane.normal);
+    const Plane& plane = planes_[members.front()];
+    const PlaneOverlaps found = find_overlaps(held_.data(), members.size(), plane.normal);
     out_.conflicts += static_cast<std::uint64_t>(std::count(found.conflicting.begin(), found.conflicting.end(), 1));
     out_.compared += found.compared;
-    record(members, plane, faces, found.shared);
+    record(members, plane, found.shared);
   }
 
-  void record(const std::vector<std::uint32_t>& members, const Plane& plane, const std::vector<PlaneFace>& faces,
-              const std::vector<char>& shared) {
+  void record(const std::vector<std::uint32_t>& members, const Plane& plane, const std::vector<char>& shared) {
     if (std::none_of(shared.begin(), shared.end(), [](char s) { return s != 0; })) return;
     ++number_;
     for (std::size_t m = 0; m < members.size(); ++m) {
@@ -170,14 +176,17 @@ class Finder {
       std::copy(plane.normal.begin(), plane.normal.end(), face.record.begin());
       face.record[CLRAY_PLANE_OFFSET] = plane.offset;
       face.record[CLRAY_PLANE_NUMBER] = number_;
-      face.record[CLRAY_PLANE_FACING] = faces[m].front ? 1.0 : -1.0;
+      face.record[CLRAY_PLANE_FACING] = held_[m].front ? 1.0 : -1.0;
       out_.faces.push_back(face);
     }
   }
 
   const std::vector<FlatFace>& faces_;
   const FaceSource& source_;
+  std::vector<Plane> planes_;  // of each face
   std::vector<Key> keys_;
+  FaceOutline first_;            // that is looked at
+  std::vector<PlaneFace> held_;  // of a plane
   std::vector<std::uint32_t> parent_;
   std::vector<bool> joined_;
   SharedPlanes out_;

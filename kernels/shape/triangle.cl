@@ -8,9 +8,9 @@
 
 /// What the test needs of a ray, once per ray.
 typedef struct RayShear {
-  vec3 o;
+  f64 ox, oy, oz;  // its origin: z along the axis of the largest component of the direction, x and y follow cyclically
   f64 sx, sy, sz;
-  u32 axis;  // of the largest component of the direction; the other two follow cyclically
+  u32 ix, iy, iz;  // which coordinates these are
 } RayShear;
 
 CLRAY_FN vec3 triangle_permute(vec3 a, u32 axis) {
@@ -22,9 +22,13 @@ CLRAY_FN vec3 triangle_permute(vec3 a, u32 axis) {
 CLRAY_FN RayShear triangle_shear(vec3 o, vec3 d) {
   RayShear r;
   const f64 ax = fabs(d.x), ay = fabs(d.y), az = fabs(d.z);
-  r.o = o;
-  r.axis = az >= ax && az >= ay ? 2u : (ay >= ax ? 1u : 0u);
-  const vec3 p = triangle_permute(d, r.axis);
+  r.iz = az >= ax && az >= ay ? 2u : (ay >= ax ? 1u : 0u);
+  r.ix = r.iz == 2u ? 0u : r.iz + 1u;
+  r.iy = r.ix == 2u ? 0u : r.ix + 1u;
+  const vec3 placed = triangle_permute(o, r.iz), p = triangle_permute(d, r.iz);
+  r.ox = placed.x;
+  r.oy = placed.y;
+  r.oz = placed.z;
   r.sx = p.x / p.z;
   r.sy = p.y / p.z;
   r.sz = 1.0 / p.z;
@@ -33,11 +37,12 @@ CLRAY_FN RayShear triangle_shear(vec3 o, vec3 d) {
 
 /// A vertex in the ray's frame: x and y across the ray, z along it in units of t.
 CLRAY_FN vec3 triangle_vertex(const CLRAY_GLOBAL f64* p, const RayShear* r) {
-  const vec3 a = triangle_permute(v3_sub(v3_load(p), r->o), r->axis);
-  return v3(fma(-r->sx, a.z, a.x), fma(-r->sy, a.z, a.y), r->sz * a.z);
+  const f64 along = p[r->iz] - r->oz;
+  return v3(fma(-r->sx, along, p[r->ix] - r->ox), fma(-r->sy, along, p[r->iy] - r->oy), r->sz * along);
 }
 
-/// Nearest hit with 0 < t <= t_max: 1, t and barycentric weights (sum 1 to rounding), or 0.
+/// Nearest hit with 0 < t <= t_max: 1, t and barycentric weights (sum 1 to rounding), or 0. One branch decides on the
+/// signs: each alone would be guessed wrongly half of the time.
 CLRAY_FN i32 triangle_intersect(const CLRAY_GLOBAL f64* p, const RayShear* r, f64 t_max, f64* t_hit, vec3* weights) {
   const vec3 a = triangle_vertex(p, r);
   const vec3 b = triangle_vertex(p + 3, r);
@@ -45,7 +50,8 @@ CLRAY_FN i32 triangle_intersect(const CLRAY_GLOBAL f64* p, const RayShear* r, f6
   const f64 u = difference_of_products(c.x, b.y, c.y, b.x);
   const f64 v = difference_of_products(a.x, c.y, a.y, c.x);
   const f64 w = difference_of_products(b.x, a.y, b.y, a.x);
-  if ((u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0)) return 0;
+  const i32 below = (u < 0.0) | (v < 0.0) | (w < 0.0), above = (u > 0.0) | (v > 0.0) | (w > 0.0);
+  if ((below & above) != 0) return 0;
   const f64 det = u + v + w;
   if (det == 0.0) return 0;
   const f64 t = fma(u, a.z, fma(v, b.z, w * c.z)) / det;

@@ -67,10 +67,16 @@ CLRAY_FN i32 meet_plane(const Buffers* g, const LocalRay* ray, const __global Cl
   return *t > 0.0;
 }
 
+/// The numbers of a primitive. Where all are triangles, theirs follow one another: no record need be read for their
+/// place.
+CLRAY_FN const __global f64* primitive_numbers(const Buffers* g, u32 index) {
+  return g->shapes + (CLRAY_ANALYTIC ? g->primitives[index].data : 9u * index);
+}
+
 /// Tests one primitive. A nearer hit replaces *hit, and so does one at equal distance that has precedence.
 static void test_primitive(const Buffers* g, const LocalRay* ray, u32 index, u32 instance, Hit* hit) {
   const __global ClrayPrimitive* primitive = g->primitives + index;
-  const __global f64* data = g->shapes + primitive->data;
+  const __global f64* data = primitive_numbers(g, index);
   f64 t, t_max = hit->t;
   u32 part = 0u, plane = 0u, rank = 0u;
   vec3 weights = v3(0.0, 0.0, 0.0);
@@ -164,7 +170,7 @@ static f64 size_of(vec3 a) { return fabs(a.x) + fabs(a.y) + fabs(a.z); }
 /// Point, normal and material of a hit.
 static Surface hit_surface(const Buffers* g, const Ray* ray, const Hit* hit) {
   const __global ClrayPrimitive* primitive = g->primitives + hit->primitive;
-  const __global f64* data = g->shapes + primitive->data;
+  const __global f64* data = primitive_numbers(g, hit->primitive);
   ShapeSurface s;
 #if CLRAY_ANALYTIC
 #if CLRAY_TRIANGLES

@@ -53,8 +53,8 @@ static void packet_test_one(const Buffers* g, Packet* p, u32 k, u32 index) {
 /// the two sums: seven times 2^-24 of the sum of the terms' sizes at most. 2^-20 of it is added.
 // lint: box test
 static u32 packet_may_hit(const Packet* p, const RayShear* r, const __global f64* data) {
-  const u32 ix = r->axis == 2u ? 0u : r->axis + 1u, iy = ix == 2u ? 0u : ix + 1u;
-  const double4 z = (double4)(data[r->axis], data[3u + r->axis], data[6u + r->axis], 0.0) - p->middle.z;
+  const u32 ix = r->ix, iy = r->iy, iz = r->iz;
+  const double4 z = (double4)(data[iz], data[3u + iz], data[6u + iz], 0.0) - p->middle.z;
   const double4 x = fma((double4)(-r->sx), z, (double4)(data[ix], data[3u + ix], data[6u + ix], 0.0) - p->middle.x);
   const double4 y = fma((double4)(-r->sy), z, (double4)(data[iy], data[3u + iy], data[6u + iy], 0.0) - p->middle.y);
   const double4 x1 = x.s2013, x2 = x.s1203, y1 = y.s2013, y2 = y.s1203;
@@ -85,12 +85,12 @@ static u32 packet_may_hit(const Packet* p, const RayShear* r, const __global f64
 /// Tests a triangle against all rays of a packet: triangle_intersect() for four at a time.
 static void packet_triangle(const Buffers* g, Packet* p, const RayShear* r, u32 index) {
   const __global ClrayPrimitive* primitive = g->primitives + index;
-  const __global f64* data = g->shapes + primitive->data;
+  const __global f64* data = primitive_numbers(g, index);
   const u32 mask = packet_may_hit(p, r, data);
   if (mask == 0u) return;
-  const vec3 pa = triangle_permute(v3_load(data), r->axis);
-  const vec3 pb = triangle_permute(v3_load(data + 3), r->axis);
-  const vec3 pc = triangle_permute(v3_load(data + 6), r->axis);
+  const vec3 pa = triangle_permute(v3_load(data), r->iz);
+  const vec3 pb = triangle_permute(v3_load(data + 3), r->iz);
+  const vec3 pc = triangle_permute(v3_load(data + 6), r->iz);
   const double4 sx = (double4)(-r->sx), sy = (double4)(-r->sy);
   for (u32 q = 0; q < CLRAY_PACKET_RAYS / 4u; ++q) {
     if (((mask >> (4u * q)) & 15u) == 0u) continue;
@@ -143,7 +143,7 @@ static void packet_frame(const __global ClrayView* from, const RayShear* r, vec3
   const f64 size = size_of(v3_load(from->box_centre)) + size_of(low) + size_of(high) + 4.0 / from->box_scale;
   p->margin = size * 5.684341886080802e-14;
   const vec3 middle =
-      triangle_permute(v3(0.5 * (low.x + high.x), 0.5 * (low.y + high.y), 0.5 * (low.z + high.z)), r->axis);
+      triangle_permute(v3(0.5 * (low.x + high.x), 0.5 * (low.y + high.y), 0.5 * (low.z + high.z)), r->iz);
   p->middle = middle;
   double4 half_x = (double4)(0.0), half_y = half_x;
   for (u32 q = 0; q < CLRAY_PACKET_RAYS / 4u; ++q) {
@@ -234,7 +234,7 @@ static void packet_intersect(const Buffers* g, u32 view, Packet* p) {
   packet_box(from, p, &low, &high);
 #if CLRAY_TRIANGLES
   const RayShear shear = triangle_shear(p->ray[0].o, p->ray[0].d);
-  packet_fill(p, shear.axis);
+  packet_fill(p, shear.iz);
   packet_frame(from, &shear, low, high, p);
 #else
   packet_fill(p, 0u);

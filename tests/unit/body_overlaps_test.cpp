@@ -29,7 +29,7 @@ PlaneFace face_of(const Square& s, bool front, std::uint32_t material, double sc
 }
 
 PlaneOverlaps find(const std::vector<PlaneFace>& faces) {
-  return find_overlaps(faces, {{0, 0, 1}});
+  return find_overlaps(faces.data(), faces.size(), {{0, 0, 1}});
 }
 
 }  // namespace
