@@ -34,13 +34,14 @@ class Faces : public FaceSource {
   void outline(const FlatFace& face, FaceOutline* out) const override {
     const RawPrimitive& raw = primitives_[face.primitive];
     const double* d = numbers_.data() + raw.data;
-    out->corners.clear();
     out->hole_radius = 0.0;
-    FlatPart flat;
     if (raw.size == kTriangleSize) {
-      for (int k = 0; k < 3; ++k) out->corners.push_back({{d[3 * k], d[3 * k + 1], d[3 * k + 2]}});
+      out->corners.resize(3);
+      for (int k = 0; k < 3; ++k) out->corners[k] = {{d[3 * k], d[3 * k + 1], d[3 * k + 2]}};
       return;
     }
+    out->corners.clear();
+    FlatPart flat;
     flat_part(raw, face.part, &flat);
     if (flat.round) {
       for (int k = 0; k < kRoundCorners; ++k) {

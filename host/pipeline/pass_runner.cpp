@@ -19,15 +19,17 @@ constexpr std::uint32_t kPacketChunk = 256;             // points of each replic
 
 PassRunner::PassRunner(Device& device, const PassPlan& plan, const Geometry& geometry, const TraceOptions& options,
                        KeptPass* kept)
-    : plan_(plan), options_(options), start_(now()), devices_(device, plan, geometry, options, kept) {
-  compile_seconds_ = now() - start_;
+    : plan_(plan), options_(options) {
+  const double start = now();
+  devices_ = std::make_unique<DeviceTeam>(device, plan, geometry, options, kept);
+  compile_seconds_ = now() - start;
 }
 
 PassRunner::~PassRunner() = default;
 
 bool PassRunner::run(Sums* sums, OpenStep* step, const std::function<bool(double)>& keep_going,
                      const Checkpoint& checkpoint) {
-  devices_.set_work(step->epoch, step->views);
+  devices_->set_work(step->epoch, step->views);
   const std::uint64_t bounces = static_cast<std::uint64_t>(plan_.traits.max_bounces) + 1;
   std::uint64_t block = kMostContributions / (2 * bounces);  // a bounce enters a book at most twice
   while ((block & (block - 1)) != 0) block &= block - 1;     // a power of two keeps neighbouring points together
@@ -44,7 +46,7 @@ bool PassRunner::run(Sums* sums, OpenStep* step, const std::function<bool(double
     }
     const double start = now();
     if (!run_block(step->views.size(), static_cast<std::uint32_t>(at), static_cast<std::uint32_t>(count), ask)) {
-      devices_.clear();
+      devices_->clear();
       return false;
     }
     // A block is what is lost where a run is killed, so it takes a fraction of what lies between two files of sums.
@@ -58,7 +60,7 @@ bool PassRunner::run(Sums* sums, OpenStep* step, const std::function<bool(double
       checkpoint.save();
     }
   }
-  devices_.drain(sums);
+  devices_->drain(sums);
   if (step->done > 0) sums->add(plan_.layout, step->more);
   for (const std::uint32_t v : step->views) sums->points[v] = step->points;
   return true;
@@ -67,14 +69,14 @@ bool PassRunner::run(Sums* sums, OpenStep* step, const std::function<bool(double
 /// Sums of an unfinished step stay apart from those of whole steps.
 void PassRunner::drain_into(OpenStep* step, std::uint64_t done) {
   if (step->more.points.empty()) step->more = Sums(plan_.layout);
-  devices_.drain(&step->more);
+  devices_->drain(&step->more);
   step->done = done;
 }
 
 bool PassRunner::run_block(std::size_t views, std::uint32_t first_point, std::uint32_t points,
                            const std::function<bool(double)>& keep_going) {
   const std::uint32_t chunk = std::min(in_packets(plan_) ? kPacketChunk : kChunk, points);
-  return devices_.run(items_of(plan_, views, points, chunk), {first_point, points, chunk}, keep_going);
+  return devices_->run(items_of(plan_, views, points, chunk), {first_point, points, chunk}, keep_going);
 }
 
 }  // namespace clray

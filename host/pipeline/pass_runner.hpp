@@ -60,8 +60,7 @@ class PassRunner : public PointRunner {
 
   const PassPlan& plan_;
   const TraceOptions& options_;
-  double start_;
-  DeviceTeam devices_;
+  std::unique_ptr<DeviceTeam> devices_;
   std::uint64_t block_points_ = kFirstPoints;  // of the next block, where sums are saved
 };
 

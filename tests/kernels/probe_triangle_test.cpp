@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "body/bvh.hpp"
+#include "generated/program_numbers.inc"
 #include "kernels/probes/probe.hpp"
 #include "shared/abi.h"
 
@@ -66,9 +67,9 @@ __kernel void probe(const __global ClrayView *views, const __global ClrayNode *n
 
 clray::ProgramOptions trace_options() {
   clray::ProgramOptions options;
-  for (const char* off : {"SHADOW", "SCATTER", "DELTA", "ONE_SIDED", "PLANES", "INSTANCED", "WIDE", "STRATA",
-                          "ANALYTIC", "PIXELS", "MIRRORS_FIRST", "SKIP_FIRST", "CURVED", "PACKET"})
-    options.defines[std::string("CLRAY_") + off] = "0";
+#define CLRAY_NUMBER(name) options.defines[#name] = "0";
+  CLRAY_PROGRAM_NUMBERS(CLRAY_NUMBER)
+#undef CLRAY_NUMBER
   for (const char* hook : {"hit", "connect", "scatter", "escape", "end", "flush"})
     options.defines[std::string("CLRAY_HOOK_") + hook + "(X)"] = "";
   for (const char* on : {"TRIANGLES", "CONNECT", "SOBOL", "LANES", "CONNECTIONS", "KEPT"})

@@ -163,6 +163,22 @@ TEST_CASE("the ids rank triangles by their numbers, each begun at its smallest v
   }
 }
 
+TEST_CASE(
+    "numbers of triangles follow one another, shared planes behind them: kernels read no record for their place") {
+  Scene scene = empty_scene(3);
+  add_mesh(scene, lattice_mesh(400, 1, 3), {0, 1, 2});  // many overlap in one plane
+  const Geometry body = build_geometry(scene);
+  REQUIRE(body.shared_planes);
+  std::size_t planes = 0;
+  for (std::size_t k = 0; k < body.primitives.size(); ++k) {
+    CHECK(body.primitives[k].data == 9 * k);
+    if (body.primitives[k].planes == CLRAY_NO_PLANES) continue;
+    CHECK(body.primitives[k].planes >= 9 * body.primitives.size());
+    ++planes;
+  }
+  CHECK(planes > 100);
+}
+
 TEST_CASE("of coincident triangles the same one is kept in any order: by material, then by component") {
   const Mesh mesh = lattice_mesh(300, 9, 2);
   Mesh copies = mesh;  // all of it again, with the slots exchanged
