@@ -70,6 +70,8 @@ clray::ProgramOptions trace_options() {
 #define CLRAY_NUMBER(name) options.defines[#name] = "0";
   CLRAY_PROGRAM_NUMBERS(CLRAY_NUMBER)
 #undef CLRAY_NUMBER
+  for (const char* text : {"ANALYTIC", "PACKET"})
+    options.defines[std::string("CLRAY_") + text] = "0";  // what is left out
   for (const char* hook : {"hit", "connect", "scatter", "escape", "end", "flush"})
     options.defines[std::string("CLRAY_HOOK_") + hook + "(X)"] = "";
   for (const char* on : {"TRIANGLES", "CONNECT", "SOBOL", "LANES", "CONNECTIONS", "KEPT"})
