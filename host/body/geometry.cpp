@@ -160,7 +160,7 @@ class Packer {
     return 0;
   }
 
-  // Sorts raw_ into canonical order and drops copies.
+  // Sorts raw_ and its numbers into canonical order and drops copies. What follows reads them one after the other.
   void rank() {
     struct Key {
       double first;
@@ -184,6 +184,14 @@ class Packer {
         sorted.push_back(raw);
     }
     raw_ = std::move(sorted);
+    std::vector<double> numbers;
+    numbers.reserve(numbers_.size());
+    for (RawPrimitive& raw : raw_) {
+      const auto first = numbers_.begin() + raw.data;
+      raw.data = static_cast<std::uint32_t>(numbers.size());
+      numbers.insert(numbers.end(), first, first + raw.size);
+    }
+    numbers_ = std::move(numbers);
   }
 
   void share_planes() {
@@ -222,7 +230,10 @@ class Packer {
 
   // Places the primitives of each part in the order of its tree, or, without one, in that of their ranks.
   void place() {
-    std::vector<bool> used(table("shape").size(), false);
+    const std::vector<TableRow>& rows = table("shape");
+    std::vector<bool> used(rows.size(), false);
+    g_.primitives.reserve(raw_.size());
+    g_.shapes.reserve(numbers_.size() + planes_.size());
     for (std::uint32_t p = 0; p < g_.parts.size(); ++p) {
       std::vector<std::uint32_t> members;
       for (std::uint32_t i = 0; i < raw_.size(); ++i) {
@@ -232,14 +243,17 @@ class Packer {
       }
       if (members.empty()) continue;
       if (!g_.trees) {
-        for (const std::uint32_t member : members) append(raw_[member], member, used);
+        for (const std::uint32_t member : members) append(raw_[member], member, rows[raw_[member].shape].faces, used);
         continue;
       }
       LinearBvh tree = build_bvh(members.size(), [&](std::size_t i) { return box_of(raw_[members[i]]); });
       g_.parts[p].root = static_cast<std::uint32_t>(g_.nodes.size());
       g_.parts[p].frame = tree.frame;
       g_.stack_needed = std::max(g_.stack_needed, tree.stack_needed);
-      for (const std::uint32_t position : tree.order) append(raw_[members[position]], members[position], used);
+      for (const std::uint32_t position : tree.order) {
+        const std::uint32_t member = members[position];
+        append(raw_[member], member, rows[raw_[member].shape].faces, used);
+      }
       append_tree(std::move(tree), static_cast<std::uint32_t>(g_.primitives.size() - members.size()), &g_.nodes);
     }
     append_planes();
@@ -248,7 +262,7 @@ class Packer {
     }
   }
 
-  void append(const RawPrimitive& raw, std::uint32_t id, std::vector<bool>& used) {
+  void append(const RawPrimitive& raw, std::uint32_t id, bool face, std::vector<bool>& used) {
     ClrayPrimitive primitive{};
     primitive.shape = raw.shape;
     primitive.data = static_cast<std::uint32_t>(g_.shapes.size());
@@ -256,7 +270,7 @@ class Packer {
     primitive.id = id;
     primitive.component = raw.component;
     const double* d = numbers_.data() + raw.data;
-    if (table("shape")[raw.shape].faces) {
+    if (face) {
       primitive.flags = CLRAY_PRIMITIVE_PLANE;
     } else {
       if (shape_traits_of(static_cast<int>(raw.shape), d + CLRAY_SHAPE_KEYS) & CLRAY_SHAPE_PLANE)

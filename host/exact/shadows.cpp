@@ -104,7 +104,7 @@ bool Shadows::shades_all(std::uint32_t blocker, const Patch& p) const {
   return gap > margin || face_hides(b, own, lit_.margin);
 }
 
-/// Appends to *kept those blockers that meet a rectangle around some patches, and reach before the farthest of them.
+/// Gives *kept those blockers that meet a rectangle around some patches, and reach before the farthest of them.
 void Shadows::near(const std::vector<Patch>& patches, const std::vector<std::uint32_t>& blockers,
                    std::vector<std::uint32_t>* kept) const {
   Patch all = patches.front();
@@ -124,6 +124,7 @@ void Shadows::near(const std::vector<Patch>& patches, const std::vector<std::uin
 
 bool Shadows::keep(const Rectangle& r, const std::vector<std::uint32_t>& faces,
                    const std::vector<std::uint32_t>& blockers, std::vector<std::uint32_t>* kept) const {
+  kept->clear();
   std::vector<Patch> patches;
   patches.reserve(faces.size());
   for (const std::uint32_t face : faces) patches.push_back(patch(face, r));

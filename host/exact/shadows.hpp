@@ -24,7 +24,7 @@ class Shadows {
   std::vector<std::uint32_t> blockers() const;
   /// Whether light comes to the side of a face that is seen.
   bool may_be_lit(std::uint32_t face) const { return carried_[face].there != CLRAY_NOT_THERE; }
-  /// Appends to *kept those blockers that may shade one of some faces in a rectangle. False: all these are in shadow.
+  /// Gives *kept those blockers that may shade one of some faces in a rectangle. False: all these are in shadow.
   bool keep(const Rectangle& r, const std::vector<std::uint32_t>& faces, const std::vector<std::uint32_t>& blockers,
             std::vector<std::uint32_t>* kept) const;
 
