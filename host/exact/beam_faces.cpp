@@ -158,7 +158,8 @@ class Builder {
 };
 
 bool made_of_faces(std::uint32_t shape) {
-  return table("shape")[shape].faces;
+  static const std::vector<TableRow>& rows = table("shape");
+  return rows[shape].faces;
 }
 
 }  // namespace

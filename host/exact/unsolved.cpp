@@ -15,6 +15,12 @@ namespace {
 constexpr int kCells = 64;        // of the grid, along a side
 constexpr double kMargin = 1e-9;  // of the body's size, beside and before a shape: far above rounding
 
+/// Asked of every primitive: the table is looked up once.
+const TableRow& shape_row(const ClrayPrimitive& primitive) {
+  static const std::vector<TableRow>& rows = table("shape");
+  return rows[primitive.shape];
+}
+
 /// What a primitive covers across a beam, and its depths toward where the beam comes from.
 struct Extent {
   double low[3], high[3];  // along the two axes across the beam, and along it
@@ -52,7 +58,7 @@ class CurvedDepths {
   Extent extent_of(const ClrayPrimitive& primitive) const {
     const RigidMotion& motion = motions_[geometry_.part_of_component[primitive.component]];
     Extent e;
-    const bool triangle = table("shape")[primitive.shape].faces;
+    const bool triangle = shape_row(primitive).faces;
     for (int axis = 0; axis < 3; ++axis) {
       const Point along{{axes_[axis].x, axes_[axis].y, axes_[axis].z}};
       if (!triangle) {
@@ -100,7 +106,7 @@ class CurvedDepths {
 }  // namespace
 
 bool made_of_polygons(const Geometry& geometry, const ClrayPrimitive& primitive) {
-  const TableRow& row = table("shape")[primitive.shape];
+  const TableRow& row = shape_row(primitive);
   if (row.faces) return true;
   if (!row.flat) return false;
   const double* keys = geometry.shapes.data() + primitive.data + CLRAY_SHAPE_KEYS;

@@ -45,8 +45,9 @@ constexpr double kUnseenShare = 0.10;  // of a total
 /// never hit. A flat face has one normal, which its first ray meets.
 bool curved(const Geometry& geometry, double rays) {
   constexpr double kRaysPerFacet = 100.0;
-  for (const ClrayPrimitive& p : geometry.primitives) {
-    if (!table("shape")[p.shape].flat) return true;
+  const std::vector<TableRow>& shapes = table("shape");
+  for (const int row : geometry.shape_rows) {
+    if (!shapes[static_cast<std::size_t>(row)].flat) return true;
   }
   return kRaysPerFacet * static_cast<double>(geometry.report.triangles) > rays;
 }
