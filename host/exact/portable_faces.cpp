@@ -10,7 +10,9 @@
 
 // Some functions of the kernels stay unused; that a visible piece has corners is not seen.
 #pragma GCC diagnostic ignored "-Wunused-function"
+#if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#endif
 
 #define CLRAY_LANES host_numbers.lanes
 #define CLRAY_BINNINGS host_numbers.binnings

@@ -29,7 +29,9 @@ int make_pass(const std::string& folder) {
 TEST_CASE("docs: the scenes of README and of docs/how-to.md are understood") {
   const Scratch scratch;
   REQUIRE(make_pass(scratch.path.string()) == 0);  // box_wing.obj and .mtl, and what a pass needs
-  for (const auto& [document, least] : {std::pair<const char*, std::size_t>{"README.md", 1}, {"docs/how-to.md", 4}}) {
+  for (const auto& one : {std::pair<const char*, std::size_t>{"README.md", 1}, {"docs/how-to.md", 4}}) {
+    const auto& document = one.first;
+    const auto& least = one.second;
     const std::vector<std::string> scenes = scenes_of(document);
     CHECK(scenes.size() >= least);
     for (const std::string& scene : scenes) {

@@ -65,7 +65,9 @@ TEST_CASE("the terminal and the summary tell the same of a session; each session
   REQUIRE(summary["session"].size() == 3);
   CHECK(summary["session"]["a b"]["mean_cross_section_m2"].get<double>() == doctest::Approx(8.37758).epsilon(1e-3));
   CHECK(summary["session"]["a-b"]["mean_cross_section_m2"].get<double>() == doctest::Approx(2.09440).epsilon(1e-3));
-  for (const auto& [name, session] : summary["session"].items()) {
+  for (const auto& one : summary["session"].items()) {
+    const auto& name = one.key();
+    const auto& session = one.value();
     CAPTURE(name);
     std::ostringstream shown;
     shown << session["mean_cross_section_m2"].get<double>();  // six digits

@@ -324,7 +324,9 @@ TEST_CASE("variants differ in their backs alone, in any order, under every detec
     for (const int bounces : {1, 2}) {
       scene.trace.max_bounces = bounces;
       const clray::Result result = run(rays(scene, 14));
-      for (const auto& [name, r] : records_of(result, scene)) {
+      for (const auto& one : records_of(result, scene)) {
+        const auto& name = one.first;
+        const auto& r = one.second;
         const bool lit = name.find("/both/") != std::string::npos;
         INFO(name, " at ", bounces, " bounces");
         // Seen from behind: rho/π and push 1 + 2 rho/3 where both sides reflect, else nothing and 1.
@@ -387,8 +389,9 @@ TEST_CASE("no word of missing hits beside a picture, a force or a bright member 
 }
 
 TEST_CASE("a smooth metal grazed: what it does not reflect it absorbs") {
-  for (const auto& [roughness, mu] :
-       {std::pair<double, double>{0.05, 0.02}, {0.01, 0.006}, {0.003, 0.002}, {0.3, 0.4}}) {
+  for (const auto& one : {std::pair<double, double>{0.05, 0.02}, {0.01, 0.006}, {0.003, 0.002}, {0.3, 0.4}}) {
+    const auto& roughness = one.first;
+    const auto& mu = one.second;
     const Vec3 s(std::sqrt(1.0 - mu * mu), 0.0, mu);
     const clray::Result result = run(pressed_plate(ggx(roughness, 0.9), s));
     const double exact = mu * (1.0 - reflected_ggx(roughness, 0.9, s).share);

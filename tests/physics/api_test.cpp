@@ -268,9 +268,9 @@ TEST_CASE("every fault of a scene is an error that names it, at every function t
            clray::expect_photons(bad, &copy);
          }},
     };
-    for (const auto& [name, call] : calls) {
-      CAPTURE(name);
-      CHECK(context_of(name, ErrorCode::input, call).rfind(fault.where, 0) == 0);
+    for (const auto& one : calls) {
+      CAPTURE(one.first);
+      CHECK(context_of(one.first, ErrorCode::input, one.second).rfind(fault.where, 0) == 0);
     }
   }
   CHECK(std::filesystem::is_empty(folder.name));
@@ -297,17 +297,17 @@ TEST_CASE("every fault of a result is an error that names it, at every function 
       {"orientations[1].observers", [](clray::Result& r) { r.orientations[1].observers.pop_back(); }},
       {"image[0]", [](clray::Result& r) { r.image.push_back({}); }},
   };
-  for (const auto& [where, make] : cases) {
-    CAPTURE(where);
+  for (const auto& one : cases) {
+    CAPTURE(one.first);
     clray::Result bad = good;
-    make(bad);
-    CHECK(context_of("check", ErrorCode::usage, [&] { clray::check_result(bad, scene); }).rfind(where, 0) == 0);
+    one.second(bad);
+    CHECK(context_of("check", ErrorCode::usage, [&] { clray::check_result(bad, scene); }).rfind(one.first, 0) == 0);
     const auto write = [&] { clray::write_result(bad, scene, folder.name + "/out"); };
-    CHECK(context_of("write_result", ErrorCode::usage, write).rfind(where, 0) == 0);
+    CHECK(context_of("write_result", ErrorCode::usage, write).rfind(one.first, 0) == 0);
     const auto session = [&] { clray::write_session(bad, scene, folder.name); };
-    CHECK(context_of("write_session", ErrorCode::usage, session).rfind(where, 0) == 0);
+    CHECK(context_of("write_session", ErrorCode::usage, session).rfind(one.first, 0) == 0);
     const auto photons = [&] { clray::expect_photons(scene, &bad); };
-    CHECK(context_of("expect_photons", ErrorCode::usage, photons).rfind(where, 0) == 0);
+    CHECK(context_of("expect_photons", ErrorCode::usage, photons).rfind(one.first, 0) == 0);
   }
   CHECK(std::filesystem::is_empty(folder.name));
 }
@@ -332,12 +332,12 @@ TEST_CASE("pictures whose pixels and bands do not fit are refused") {
       {"image[0].band_source_W_m2", [](clray::ImageResult& i) { i.band_source_W_m2.clear(); }},
       {"image[0].pixel_m", [](clray::ImageResult& i) { i.pixel_m = kNan; }},
   };
-  for (const auto& [where, make] : cases) {
-    CAPTURE(where);
+  for (const auto& one : cases) {
+    CAPTURE(one.first);
     clray::Result bad = good;
-    make(bad.image[0]);
+    one.second(bad.image[0]);
     const auto write = [&] { clray::write_result(bad, scene, folder.name + "/out"); };
-    CHECK(context_of("write_result", ErrorCode::usage, write) == where);
+    CHECK(context_of("write_result", ErrorCode::usage, write) == one.first);
   }
   CHECK(std::filesystem::is_empty(folder.name));
 }

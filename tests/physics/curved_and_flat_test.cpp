@@ -71,9 +71,10 @@ double expected(const Vec3& source, const Vec3& observer) {
 }  // namespace
 
 TEST_CASE("a sphere above a plate: most of the plate is exact, rays find the sphere and what it may shade") {
-  for (const auto& [source, observer] :
-       {std::pair(toward(0.0), toward(0.0)), std::pair(toward(0.6, 0.3), toward(0.6, 0.3)),
-        std::pair(toward(0.5, 0.2), toward(0.4, 2.4))}) {
+  for (const auto& one : {std::pair(toward(0.0), toward(0.0)), std::pair(toward(0.6, 0.3), toward(0.6, 0.3)),
+                          std::pair(toward(0.5, 0.2), toward(0.4, 2.4))}) {
+    const auto& source = one.first;
+    const auto& observer = one.second;
     CAPTURE(source.x);
     CAPTURE(observer.x);
     Scene scene = plate_and_sphere();

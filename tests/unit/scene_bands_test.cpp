@@ -49,7 +49,9 @@ TEST_CASE("a curve of constant transmission is a top hat, under the Sun too") {
   sun.kind = Source::Kind::sun;
   for (const double blackbody : {0.0, 300.0, 40000.0}) {
     sun.blackbody_K = blackbody;
-    for (const auto& [low, high] : {std::pair{400.0, 700.0}, {549.9, 550.1}, {200.0, 20000.0}, {8000.0, 14000.0}}) {
+    for (const auto& one : {std::pair{400.0, 700.0}, {549.9, 550.1}, {200.0, 20000.0}, {8000.0, 14000.0}}) {
+      const auto& low = one.first;
+      const auto& high = one.second;
       CAPTURE(low);
       const double hat = source_band_W_m2(sun, {"", low, high});
       const double curve = source_band_W_m2(sun, make_band("c", {{low, high}, {0.25, 0.25}}));

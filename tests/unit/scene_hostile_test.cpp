@@ -47,7 +47,9 @@ TEST_CASE("hostile: a pipe, a device or a folder in place of any file is refused
       {kBall + "[station]\npulse = ", ""},
       {kBall + "[station]\nposition_m = [6e6, 0, 0]\ncpf = ", ""},
   };
-  for (const auto& [head, tail] : places) {
+  for (const auto& one : places) {
+    const auto& head = one.first;
+    const auto& tail = one.second;
     CAPTURE(head);
     CHECK(f.complaint(head + "\"pipe.csv\"" + tail)
               .find("\"pipe.csv\" is a device or pipe; a regular file was expected") != std::string::npos);

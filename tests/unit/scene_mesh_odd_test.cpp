@@ -188,7 +188,9 @@ TEST_CASE("PLY: strips of triangles are triangles that look to one side") {
   // Two squares as one strip, then as two strips of one list; a repeated corner turns the direction of a strip.
   const std::pair<const char*, double> cases[] = {
       {"6 0 1 2 3 4 5\n", 2.0}, {"9 0 1 2 3 -1 2 3 4 5\n", 2.0}, {"9 0 1 2 3 3 2 2 3 4\n", 1.5}};
-  for (const auto& [strips, area] : cases) {
+  for (const auto& one : cases) {
+    const auto& strips = one.first;
+    const auto& area = one.second;
     CAPTURE(strips);
     const Folder folder;
     const auto mesh = clray::load_mesh(

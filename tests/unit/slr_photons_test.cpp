@@ -169,12 +169,13 @@ TEST_CASE("Unix, GPS and Julian seconds: shots, ranges and dates keep their pico
                         {1.4e9 + 0.5, 44244.0, 60447},
                         {2.12e11, -2400000.5, 53703},
                         {-3e9, 95000.0, 60277}};
-  for (const auto& [start, mjd, day] : cases) {
+  for (const Case& c : cases) {
+    const double start = c.start;
     CAPTURE(start);
     Run run({start, start + 1.0, start + 2.0});
     Station& station = *run.scene.station;
     station.rate_Hz = 8192.0;
-    station.start_mjd = mjd;
+    station.start_mjd = c.mjd;
     station.noise_per_ns = 0.0;
     for (auto& d : run.result.delay) d.bin_m2_per_sr = {1e6};  // every shot a photon
     for (int i = 0; i <= 4; ++i) station.ranges.emplace_back(start + 0.5 * i, 1e6 + 7e3 * 0.5 * i);
@@ -207,6 +208,6 @@ TEST_CASE("Unix, GPS and Julian seconds: shots, ranges and dates keep their pico
     CHECK(worst_m < 1e-4);
     const CrdFile crd = read_crd((folder.path / "observations.crd").string(), {});
     CHECK(crd.ranges == 16384);
-    CHECK(crd.header.start.mjd == day);
+    CHECK(crd.header.start.mjd == c.day);
   }
 }
