@@ -25,9 +25,9 @@ __kernel void clray_exact(CLRAY_EXACT_BUFFERS(CLRAY_ARGUMENT) u32 seen, u32 coun
 #if CLRAY_TILES
 #include "exact/sample.cl"
 
-__kernel void clray_sample(CLRAY_SAMPLE_BUFFERS(CLRAY_ARGUMENT) u32 count) {
-  const u32 item = (u32)get_global_id(0);
-  if (item >= count) return;
+__kernel void clray_sample(CLRAY_SAMPLE_BUFFERS(CLRAY_ARGUMENT) u32 first, u32 end) {
+  const u32 item = first + (u32)get_global_id(0);
+  if (item >= end) return;
   const Sampled g = {CLRAY_SAMPLE_BUFFERS(CLRAY_VALUE)};
   sample_item(&g, item);
 }

@@ -131,7 +131,7 @@ class Builder {
     for (;;) {
       wake_.wait(lock, [this] { return !tasks_.empty() || busy_ == 0 || failure_; });
       if (tasks_.empty() || failure_) return;
-      Task task = std::move(tasks_.front());
+      Task task = tasks_.front();
       tasks_.pop_front();
       ++busy_;
       lock.unlock();
@@ -143,7 +143,7 @@ class Builder {
         lock.lock();
         failure_ = std::current_exception();
       }
-      for (Task& next : more) tasks_.push_back(std::move(next));
+      for (const Task& next : more) tasks_.push_back(next);
       --busy_;
       wake_.notify_all();
     }

@@ -17,6 +17,21 @@
 
 namespace clray {
 
+/// Set by the thread that uses a device; any other may ask.
+class Flag {
+ public:
+  Flag() = default;
+  Flag(const Flag& other) : set_(other.set_.load()) {}
+  Flag& operator=(bool set) {
+    set_ = set;
+    return *this;
+  }
+  operator bool() const { return set_; }
+
+ private:
+  std::atomic<bool> set_{false};
+};
+
 struct Device::Impl {
   /// One OpenCL device, ready for work.
   struct Opened {
@@ -31,7 +46,7 @@ struct Device::Impl {
     std::map<std::string, cl::Program> programs;  ///< programs built so far, by build options and source
     std::map<std::string, cl::Program> by_name;   ///< the same by program_name(), found without making a source
     bool has_cache = false;                       ///< the driver keeps programs itself
-    bool left_out = false;                        ///< it has failed, and others do its share
+    Flag left_out;                                ///< it has failed, and others do its share
     std::set<std::string> passed;                 ///< self-tests that passed in this process
 
     /// Runs a self-test that throws where it fails, unless it passed under this name before.

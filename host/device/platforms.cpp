@@ -9,6 +9,7 @@
 #include <exception>
 #include <functional>
 #include <mutex>
+#include <set>
 
 #include "device/kernel_cache.hpp"
 #include "device/self_test.hpp"
@@ -75,15 +76,33 @@ std::vector<FoundDevice> select(const std::vector<FoundDevice>& devices,
   return chosen;
 }
 
-/// Devices of that type. Those with fp64 come first; among equals, a device of this type alone comes before one that
-/// claims to be CPU and GPU at once.
+/// What quirks.def says of a device.
+std::set<std::string> quirks_of(const DeviceInfo& info) {
+  struct Quirk {
+    const char *platform, *device, *define;
+  };
+  static const Quirk quirks[] = {
+#define QUIRK(platform, device, define, why) {platform, device, #define},
+#include "device/quirks.def"
+#undef QUIRK
+  };
+  std::set<std::string> defines;
+  for (const Quirk& quirk : quirks) {
+    if (contains(info.platform, quirk.platform) && contains(info.name, quirk.device)) defines.insert(quirk.define);
+  }
+  return defines;
+}
+
+/// Devices of that type. A device of this type alone comes before one that claims to be CPU and GPU at once; among
+/// equals, one with fp64 first; among equals, those that quirks.def prefers.
 std::vector<FoundDevice> of_type(const std::vector<FoundDevice>& devices, cl_device_type type, bool also_both) {
   auto chosen = select(devices, [&](const FoundDevice& found) {
     return (found.type & type) != 0 && (also_both || (found.type & kCpuAndGpu) != kCpuAndGpu);
   });
   std::stable_sort(chosen.begin(), chosen.end(), [](const FoundDevice& a, const FoundDevice& b) {
     const auto rank = [](const FoundDevice& x) {
-      return ((x.type & kCpuAndGpu) == kCpuAndGpu ? 2 : 0) + (x.info.fp64 ? 0 : 1);
+      const bool preferred = quirks_of(x.info).count("CLRAY_HOST_PREFERRED") > 0;
+      return ((x.type & kCpuAndGpu) == kCpuAndGpu ? 4 : 0) + (x.info.fp64 ? 0 : 2) + (preferred ? 0 : 1);
     };
     return rank(a) < rank(b);
   });
@@ -194,25 +213,14 @@ std::vector<FoundDevice> choose_devices(const std::vector<FoundDevice>& devices,
 }
 
 OpenedDevice open_device(const FoundDevice& found) {
-  struct Quirk {
-    const char *platform, *device, *define;
-  };
-  static const Quirk quirks[] = {
-#define QUIRK(platform, device, define, why) {platform, device, #define},
-#include "device/quirks.def"
-#undef QUIRK
-  };
   return with_cl_errors(found.info.name, [&] {
     OpenedDevice opened;
     opened.info = found.info;
     opened.device = found.device;
     opened.context = cl::Context(found.device);
     opened.queue = cl::CommandQueue(opened.context, found.device, CL_QUEUE_PROFILING_ENABLE);
-    for (const auto& quirk : quirks) {
-      if (contains(found.info.platform, quirk.platform) && contains(found.info.name, quirk.device)) {
-        opened.defines[quirk.define] = "1";
-      }
-    }
+    for (const std::string& define : quirks_of(found.info)) opened.defines[define] = "1";
+    opened.defines.erase("CLRAY_HOST_PREFERRED");
     opened.no_optimiser = opened.defines.erase("CLRAY_HOST_NO_OPTIMISER") > 0;
     opened.has_cache = opened.defines.erase("CLRAY_HOST_HAS_CACHE") > 0;
     // Rounding up to work-groups of at most 1024 leaves it below 65535.

@@ -50,24 +50,32 @@ ExactDevice::ExactDevice(OpenedDevice& device, const ProgramOptions& options, co
   opened_.test_once("solved\n" + program_name("exact.cl", options), [&] {
     run_exact_self_test(opened_, program_source(opened_, "exact.cl", options), kernel_, numbers_);
   });
-  bins_ = make_zero_buffer<i64>(opened_, bins);
+  bins_ = make_buffer<i64>(opened_, bins);
 }
 
 ExactDevice::ExactDevice(OpenedDevice& device, const cl::Kernel& kernel, const ExactNumbers& numbers,
                          std::uint64_t bins)
     : opened_(device), numbers_(numbers), bin_count_(bins), kernel_(kernel) {
   check_sums_size(opened_, bins);
-  bins_ = make_zero_buffer<i64>(opened_, bins);
+  bins_ = make_buffer<i64>(opened_, bins);
 }
 
-void ExactDevice::begin_group(const FaceGroup& group) {
+void ExactDevice::begin_group(const FaceGroup& group, const std::vector<BinRow>& rows) {
   group_ = &group;
+  rows_ = rows;
+  batch_.clear();
+  host_sums_.clear();
+  found_lit_.clear();
   check_buffer_size(opened_, static_cast<double>(sizeof(ClrayFace)) * static_cast<double>(group.faces.size()),
                     "the faces of a view", "faces");
   faces_ = make_buffer(opened_, group.faces);
   weights_ = make_buffer(opened_, group.weights);
   binning_ = make_buffer(opened_, group.binnings);
   sums_ = make_zero_buffer<i64>(opened_, group.faces.size() * CLRAY_FACE_SUMS);
+  for (const BinRow& row : rows_) {
+    zero_buffer<i64>(opened_, bins_, row.count, row.first);
+    if (!host_bins_.empty()) std::fill_n(host_bins_.begin() + static_cast<std::ptrdiff_t>(row.first), row.count, 0);
+  }
 }
 
 void ExactDevice::launch_batch(ItemBatch* batch) {
@@ -120,21 +128,18 @@ void ExactDevice::finish_on_host(const std::vector<std::uint32_t>& unfinished) {
     exact_item_on_host(host, numbers_, group_->seen, unfinished[k], unfinished[k + 1], &found_lit_);
 }
 
-void ExactDevice::end_group(std::vector<i64>* sums, std::vector<ClrayPiece>* lit) {
+void ExactDevice::end_group(std::vector<i64>* sums, std::vector<ClrayPiece>* lit, std::vector<std::vector<i64>>* bins) {
   finish_batch();
   const auto found = read_buffer<i64>(opened_, sums_, group_->faces.size() * CLRAY_FACE_SUMS);
   for (std::size_t k = 0; k < found.size(); ++k) (*sums)[k] += found[k];
   for (std::size_t k = 0; k < host_sums_.size(); ++k) (*sums)[k] += host_sums_[k];
   lit->insert(lit->end(), found_lit_.begin(), found_lit_.end());
-  found_lit_.clear();
-  host_sums_.clear();
+  for (std::size_t r = 0; r < rows_.size(); ++r) {
+    const auto row = read_buffer<i64>(opened_, bins_, rows_[r].count, rows_[r].first);
+    for (std::size_t k = 0; k < row.size(); ++k)
+      (*bins)[r][k] += row[k] + (host_bins_.empty() ? 0 : host_bins_[rows_[r].first + k]);
+  }
   group_ = nullptr;
-}
-
-void ExactDevice::read_bins(std::vector<i64>* bins) {
-  const auto found = read_buffer<i64>(opened_, bins_, bin_count_);
-  for (std::size_t k = 0; k < found.size(); ++k) (*bins)[k] += found[k];
-  for (std::size_t k = 0; k < host_bins_.size(); ++k) (*bins)[k] += host_bins_[k];
 }
 
 }  // namespace clray

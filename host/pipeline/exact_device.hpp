@@ -32,6 +32,11 @@ struct ItemBatch {
   void clear();
 };
 
+/// A part of the histograms.
+struct BinRow {
+  std::size_t first, count;
+};
+
 class ExactDevice {
  public:
   /// Builds the program, or takes what was built before, and tests it once per device. `bins`: numbers of all
@@ -41,14 +46,14 @@ class ExactDevice {
   /// The same with a kernel that was built before, which is not tested.
   ExactDevice(OpenedDevice& device, const cl::Kernel& kernel, const ExactNumbers& numbers, std::uint64_t bins);
 
-  /// The faces that the next batches are of. `group` must stay until end_group().
-  void begin_group(const FaceGroup& group);
+  /// The faces that the next batches are of, and the parts of the histograms that they add to. `group` must stay until
+  /// end_group(). Forgets a group that was not ended.
+  void begin_group(const FaceGroup& group, const std::vector<BinRow>& rows);
   /// Launches a batch; waits for the one before. Takes what `batch` holds and leaves it empty.
   void launch_batch(ItemBatch* batch);
-  /// Waits for the last batch, adds the sums of the group's faces to *sums and appends its lit pieces to *lit.
-  void end_group(std::vector<i64>* sums, std::vector<ClrayPiece>* lit);
-  /// Adds all bins to *bins.
-  void read_bins(std::vector<i64>* bins);
+  /// Waits for the last batch, adds the sums of the group's faces to *sums and those of each row of bins to
+  /// (*bins)[row], and appends its lit pieces to *lit.
+  void end_group(std::vector<i64>* sums, std::vector<ClrayPiece>* lit, std::vector<std::vector<i64>>* bins);
 
  private:
   void finish_batch();
@@ -60,6 +65,7 @@ class ExactDevice {
   cl::Kernel kernel_;
   cl::Buffer faces_, weights_, binning_, sums_, bins_, tiles_, lists_, items_, pieces_, unfinished_, lit_, lit_count_;
   const FaceGroup* group_ = nullptr;
+  std::vector<BinRow> rows_;
   ItemBatch batch_;  // that runs
   std::vector<i64> host_sums_, host_bins_;
   std::vector<ClrayPiece> found_lit_;

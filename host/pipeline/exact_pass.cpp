@@ -11,9 +11,9 @@
 #include "exact/tiles.hpp"
 #include "pipeline/clock.hpp"
 #include "pipeline/detector/room.hpp"
-#include "pipeline/exact_device.hpp"
 #include "pipeline/exact_group.hpp"
 #include "pipeline/exact_sights.hpp"
+#include "pipeline/exact_team.hpp"
 #include "scene/tables.hpp"
 
 namespace clray {
@@ -29,8 +29,8 @@ bool wants_all_faces(const PassPlan& plan) {
 
 class Solver {
  public:
-  Solver(const PassPlan& plan, const Geometry& geometry, const std::vector<Sight>& sights,
-         std::vector<std::unique_ptr<ExactDevice>>& devices, const std::function<bool(double)>& keep_going, Sums* sums)
+  Solver(const PassPlan& plan, const Geometry& geometry, const std::vector<Sight>& sights, ExactTeam& devices,
+         const std::function<bool(double)>& keep_going, Sums* sums)
       : plan_(plan),
         geometry_(geometry),
         sights_(sights),
@@ -72,7 +72,7 @@ class Solver {
   }
 
   bool solve_lit(Group* group) {
-    const bool go = solve(group, [&](std::size_t k, ItemBatch* batch) {
+    const bool go = solve(sights_.front(), group, [&](std::size_t k, ItemBatch* batch) {
       return cut_tiles(group->beams[k], [&](const TileFaces& tile) {
         const std::uint32_t number = add_tile(*group, k, tile, batch);
         for (const std::uint32_t face : tile.faces) {
@@ -89,7 +89,7 @@ class Solver {
   bool solve_seen(const Sight& sight, const Group& lit, Group group) {
     std::vector<Carrier> carriers;
     for (std::size_t k = 0; k < group.beams.size(); ++k) carriers.emplace_back(lit.beams[k], group.beams[k]);
-    const bool go = solve(&group, [&](std::size_t k, ItemBatch* batch) {
+    const bool go = solve(sight, &group, [&](std::size_t k, ItemBatch* batch) {
       const std::vector<ClrayPiece> pieces = seen_pieces(carriers[k], lit.lit[k], group, k);
       return cut_tiles(group.beams[k], pieces, [&](const TileFaces& tile) {
         const std::uint32_t number = add_tile(group, k, tile, batch);
@@ -131,20 +131,21 @@ class Solver {
 
   /// `add_items` gives the items of beam k of the group.
   template <class AddItems>
-  bool solve(Group* group, const AddItems& add_items) {
-    for (auto& device : devices_) device->begin_group(group->on_device);
-    ItemBatch batch;
-    bool go = true;
-    for (std::size_t k = 0; k < group->beams.size() && go; ++k) go = add_items(k, &batch);
-    go = go && launch(&batch, group->end_view());
-    std::vector<i64> found(group->on_device.faces.size() * CLRAY_FACE_SUMS);
-    std::vector<ClrayPiece> lit;
-    for (auto& device : devices_) device->end_group(&found, &lit);
+  bool solve(const Sight& sight, Group* group, const AddItems& add_items) {
+    ExactTeam::Found found;
+    const auto launch_all = [&] {
+      ItemBatch batch;
+      for (std::size_t k = 0; k < group->beams.size(); ++k) {
+        if (!add_items(k, &batch)) return false;
+      }
+      return launch(&batch, group->end_view());
+    };
+    const bool go = devices_.solve(group->on_device, rows_of(sight, *group), launch_all, &found);
     group->visible.reserve(group->on_device.faces.size());
     for (std::size_t f = 0; f < group->on_device.faces.size(); ++f)
-      group->visible.push_back(visible_face(group->on_device.faces[f], found.data() + f * CLRAY_FACE_SUMS));
+      group->visible.push_back(visible_face(group->on_device.faces[f], found.sums.data() + f * CLRAY_FACE_SUMS));
     group->lit.resize(group->beams.size());
-    for (ClrayPiece& piece : lit) {
+    for (ClrayPiece& piece : found.lit) {
       if (piece.corners == 0) continue;
       const auto next = std::upper_bound(group->offsets.begin(), group->offsets.end(), piece.face);
       const auto k = static_cast<std::size_t>(next - group->offsets.begin()) - 1;
@@ -152,6 +153,17 @@ class Solver {
       group->lit[k].push_back(piece);
     }
     return go;
+  }
+
+  /// Where the histograms of a group's views are.
+  std::vector<BinRow> rows_of(const Sight& sight, const Group& group) const {
+    std::vector<BinRow> rows;
+    if (sight.connections.empty()) return rows;
+    for (const ClrayBinning& b : sight.binnings) {
+      const std::size_t of_view = plan_.request.lanes.size() * (b.bins + 2);
+      rows.push_back({b.offset + group.first_view * of_view, group.beams.size() * of_view});
+    }
+    return rows;
   }
 
   bool wanted(const Group& group, std::size_t face) const {
@@ -182,8 +194,7 @@ class Solver {
   }
 
   bool launch(ItemBatch* batch, std::size_t views_done) {
-    devices_[next_device_]->launch_batch(batch);
-    next_device_ = (next_device_ + 1) % devices_.size();
+    devices_.launch(batch);
     return keep_going_(static_cast<double>(views_done) / static_cast<double>(plan_.beams.views.size()));
   }
 
@@ -212,11 +223,11 @@ class Solver {
   const PassPlan& plan_;
   const Geometry& geometry_;
   const std::vector<Sight>& sights_;
-  std::vector<std::unique_ptr<ExactDevice>>& devices_;
+  ExactTeam& devices_;
   const std::function<bool(double)>& keep_going_;
   Sums& sums_;
   const bool all_faces_;
-  std::size_t next_device_ = 0, end_ = 0;
+  std::size_t end_ = 0;
 };
 
 }  // namespace
@@ -224,18 +235,15 @@ class Solver {
 /// What the pass sees, and its devices.
 struct ExactPass::Parts {
   std::vector<Sight> sights;
-  std::uint64_t bins = 0;  // numbers of all histograms
-  std::vector<std::unique_ptr<ExactDevice>> devices;
+  std::unique_ptr<ExactTeam> devices;
 };
 
 ExactPass::ExactPass(Device& device, const PassPlan& plan, const Geometry& geometry)
     : plan_(plan), geometry_(geometry), parts_(std::make_unique<Parts>()) {
   const double start = now();
   parts_->sights = sights_of(plan);
-  parts_->bins = lay_out_bins(plan, &parts_->sights);
-  parts_->devices = on_each_device(&device.impl(), [&](OpenedDevice& opened) {
-    return std::make_unique<ExactDevice>(opened, plan.program.options, exact_numbers(plan), parts_->bins);
-  });
+  const std::uint64_t bins = lay_out_bins(plan, &parts_->sights);
+  parts_->devices = std::make_unique<ExactTeam>(device, plan, bins);
   compile_seconds_ = now() - start;
 }
 
@@ -245,7 +253,7 @@ bool ExactPass::run(Sums* sums, OpenStep* step, const std::function<bool(double)
                     const Checkpoint& checkpoint) {
   *sums = step->done > 0 ? step->more : Sums(plan_.layout);
   sums->area_rounding.resize(plan_.beams.views.size());
-  Solver solver(plan_, geometry_, parts_->sights, parts_->devices, keep_going, sums);
+  Solver solver(plan_, geometry_, parts_->sights, *parts_->devices, keep_going, sums);
   const bool solved = solver.run(step->from + step->done, step->points, [&](std::size_t end) {
     if (!checkpoint.due || !checkpoint.due()) return;
     step->more = *sums;
@@ -259,9 +267,7 @@ bool ExactPass::run(Sums* sums, OpenStep* step, const std::function<bool(double)
 
 /// What devices have found of histograms since the pass began.
 void ExactPass::add_bins(Sums* sums) const {
-  std::vector<i64> bins(parts_->bins);
-  for (auto& device : parts_->devices) device->read_bins(&bins);
-  take_bins(plan_, parts_->sights, bins, sums);
+  take_bins(plan_, parts_->sights, parts_->devices->bins(), sums);
 }
 
 }  // namespace clray

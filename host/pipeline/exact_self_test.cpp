@@ -104,10 +104,11 @@ Solved solve_on_device(OpenedDevice& opened, const cl::Kernel& kernel, const Fac
                        const ExactNumbers& numbers, std::size_t bins) {
   Solved out{std::vector<i64>(group.faces.size() * CLRAY_FACE_SUMS), std::vector<i64>(bins), {}};
   ExactDevice device(opened, kernel, numbers, bins);
-  device.begin_group(group);
+  std::vector<std::vector<i64>> rows{std::vector<i64>(bins)};
+  device.begin_group(group, {{0, bins}});
   device.launch_batch(&batch);
-  device.end_group(&out.sums, &out.lit);
-  device.read_bins(&out.bins);
+  device.end_group(&out.sums, &out.lit, &rows);
+  out.bins = rows.front();
   return out;
 }
 
@@ -185,7 +186,7 @@ void compare_samples(OpenedDevice& opened, const cl::Kernel& kernel, const Exact
     std::memcpy(out.data(), x.data(), x.size() * sizeof(double));
     return out;
   };
-  const SampleSums found = device.sample(tiles, sampling);
+  const SampleSums found = device.sample(tiles, sampling, nullptr);
   compare(opened, "value", bits(values), bits(found.values));
   compare(opened, "sampled sum", sums, found.moments);
   compare(opened, "sampled bin", histogram, found.bins);

@@ -73,6 +73,11 @@ SavedPass& RunSaver::pass(const PassPlan& plan) {
   return sums_.passes[static_cast<std::size_t>(at - plans_.begin())];
 }
 
+bool RunSaver::has_anything() const {
+  return std::any_of(sums_.passes.begin(), sums_.passes.end(),
+                     [](const SavedPass& pass) { return pass.complete || !pass.notes.empty() || pass.step.done > 0; });
+}
+
 Checkpoint RunSaver::checkpoint() {
   Checkpoint c;
   if (!writes() || saving_.every_s <= 0.0) return c;

@@ -23,6 +23,8 @@ class RunSaver {
   const Share& share() const { return saving_.share; }
   bool has_one_of_several() const { return saving_.share.of > 1; }
   bool writes() const { return !saving_.file.empty(); }
+  /// Whether any pass has found anything that the file could have.
+  bool has_anything() const;
   /// Whether the file is to have a pass when that is over.
   bool keeps(const PassPlan& plan) const { return writes() && (saving_.keep || plans_.back() != &plan); }
 

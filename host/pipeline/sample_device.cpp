@@ -2,13 +2,16 @@
 // See sample_device.hpp.
 #include "pipeline/sample_device.hpp"
 
+#include <algorithm>
+
 #include "device/buffers.hpp"
 #include "pipeline/exact_self_test.hpp"
 
 namespace clray {
 namespace {
 
-constexpr std::size_t kGroup = 64;  // work-items
+constexpr std::size_t kGroup = 64;      // work-items
+constexpr double kSliceSeconds = 0.15;  // of a launch: an interrupt waits no longer
 
 }  // namespace
 
@@ -35,7 +38,7 @@ void SampleDevice::begin_view(const FaceGroup& group, const LightBeam& light) {
   for (const ClrayBinning& b : group.binnings) bin_numbers_ += numbers_.lanes * (b.bins + 2);
 }
 
-SampleSums SampleDevice::sample(const SampledTiles& tiles, const ClraySampling& sampling) {
+SampleSums SampleDevice::sample(const SampledTiles& tiles, const ClraySampling& sampling, Pause* pause) {
   const std::size_t points = tiles.tiles.size() * sampling.replicates;
   const std::size_t moments = sampling.adds == 0 ? 0 : std::size_t{3} * numbers_.lanes * sampling.replicates;
   const std::size_t bins = sampling.adds == 0 ? 0 : bin_numbers_ * sampling.replicates;
@@ -47,10 +50,19 @@ SampleSums SampleDevice::sample(const SampledTiles& tiles, const ClraySampling& 
     const cl::Buffer shaded = make_buffer(opened_, tiles.shaded), blockers = make_buffer(opened_, tiles.blockers);
     const cl::Buffer how = make_buffer(opened_, std::vector<ClraySampling>{sampling});
     const std::size_t items = sample_items(tiles.tiles.size(), sampling.replicates);
-    set_arguments(opened_, kernel_, faces_, weights_, at, listed, carried_, lit_faces_, shaded, blockers, binnings_,
-                  how, values, sums, histogram, hits, static_cast<cl_uint>(items));
-    launch(opened_, kernel_, items, kGroup);
-    with_cl_errors(opened_.info.name, [&] { opened_.queue.finish(); });
+    for (std::size_t first = 0, end; first < items; first = end) {
+      end = first + std::min(slice_items_, items - first);
+      set_arguments(opened_, kernel_, faces_, weights_, at, listed, carried_, lit_faces_, shaded, blockers, binnings_,
+                    how, values, sums, histogram, hits, static_cast<cl_uint>(first), static_cast<cl_uint>(end));
+      const double start = now();
+      launch(opened_, kernel_, end - first, kGroup);
+      finish(opened_);
+      const double factor = std::clamp(kSliceSeconds / std::max(now() - start, 1e-6), 0.25, 4.0);
+      if (end - first == slice_items_ || factor < 1.0)
+        slice_items_ = std::clamp<std::size_t>(static_cast<std::size_t>(factor * static_cast<double>(end - first)),
+                                               kGroup, opened_.most_items);
+      if (end < items && pause != nullptr) pause->ask();
+    }
   }
   return {read_buffer<double>(opened_, values, points), read_buffer<i64>(opened_, sums, moments),
           read_buffer<i64>(opened_, histogram, bins), read_buffer<u32>(opened_, hits, bins)};

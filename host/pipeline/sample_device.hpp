@@ -9,6 +9,7 @@
 #include "device/program.hpp"
 #include "exact/portable_faces.hpp"
 #include "pipeline/exact_device.hpp"
+#include "pipeline/pause.hpp"
 
 namespace clray {
 
@@ -45,14 +46,15 @@ class SampleDevice {
 
   /// The faces of the view that is sampled next. `light` is empty where the view is from the source.
   void begin_view(const FaceGroup& group, const LightBeam& light);
-  /// Samples every tile; the sums are empty where points add to none.
-  SampleSums sample(const SampledTiles& tiles, const ClraySampling& sampling);
+  /// Samples every tile in launches of bounded time; the sums are empty where points add to none.
+  SampleSums sample(const SampledTiles& tiles, const ClraySampling& sampling, Pause* pause);
 
  private:
   OpenedDevice& opened_;
   ExactNumbers numbers_;
   cl::Kernel kernel_;
-  std::uint64_t bin_numbers_ = 0;  // of a replicate
+  std::uint64_t bin_numbers_ = 0;   // of a replicate
+  std::size_t slice_items_ = 1024;  // of the next launch
   cl::Buffer faces_, weights_, binnings_, lit_faces_, carried_;
 };
 

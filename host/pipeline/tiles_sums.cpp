@@ -80,7 +80,7 @@ void add_moments(const TilesFound& found, const PassDetector& d, const i64* mome
 
 }  // namespace
 
-void add_covered(const TilesFound& found, Sums* sums) {
+void add_covered(const TilesFound& found, Sums* sums, Pause* pause) {
   const FaceGroup& group = found.view.group().on_device;
   const TilesView::Stage& stage = found.stage;
   const std::size_t lanes = found.plan.request.lanes.size();
@@ -95,7 +95,10 @@ void add_covered(const TilesFound& found, Sums* sums) {
   host.sums = face_sums.data();
   host.bins = bins.data();
   const ExactNumbers known = exact_numbers(found.plan);
-  for (std::uint32_t k = 0; k < stage.covered.size(); ++k) covered_tile_on_host(host, known, k, stage.covering[k]);
+  for (std::uint32_t k = 0; k < stage.covered.size(); ++k) {
+    covered_tile_on_host(host, known, k, stage.covering[k]);
+    (*pause)();
+  }
   std::vector<VisibleFace> visible;
   for (std::size_t f = 0; f < group.faces.size(); ++f)
     visible.push_back(visible_face(group.faces[f], face_sums.data() + f * CLRAY_FACE_SUMS));

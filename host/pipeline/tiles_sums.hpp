@@ -23,7 +23,7 @@ struct TilesFound {
 };
 
 /// Adds what covered tiles bring.
-void add_covered(const TilesFound& found, Sums* sums);
+void add_covered(const TilesFound& found, Sums* sums, Pause* pause);
 /// Adds what points brought in the others.
 void add_sampled(const TilesFound& found, const SampleSums& samples, Sums* sums);
 

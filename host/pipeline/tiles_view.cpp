@@ -51,8 +51,9 @@ TilesView::TilesView(const PassPlan& plan, const Geometry& geometry, const std::
   }
 }
 
-void TilesView::begin() {
-  frontier_ = std::make_unique<Frontier>(group_.beams.front(), shadows_.get(), [this](std::uint32_t face) {
+void TilesView::begin(Pause* pause) {
+  frontier_ = std::make_unique<Frontier>(group_.beams.front(), shadows_.get(), [this, pause](std::uint32_t face) {
+    (*pause)();
     return group_.shines(face) && (shadows_ == nullptr || shadows_->may_be_lit(face));
   });
 }
@@ -94,11 +95,11 @@ std::vector<double> TilesView::spreads(std::uint64_t size, const Ask& ask) {
   return spread;
 }
 
-const TilesView::Stage& TilesView::stage(std::uint64_t points, const Ask& ask) {
+const TilesView::Stage& TilesView::stage(std::uint64_t points, const Ask& ask, Pause* pause) {
   const auto known = stages_.find(points);
   if (known != stages_.end()) return known->second;
   const auto count = [&] { return frontier_->mixed().size(); };
-  if (frontier_ == nullptr || count() > points) begin();
+  if (frontier_ == nullptr || count() > points) begin(pause);
   for (bool go = true; go && count() < std::min<std::uint64_t>(kFirstTiles, points);) {
     std::vector<double> areas;
     for (const Frontier::Tile& t : frontier_->mixed()) areas.push_back(t.at.area());

@@ -36,12 +36,12 @@ class TilesView {
   /// The power of two by which sums of the view are smaller than those of the pass.
   int smaller() const { return smaller_; }
   /// The view in tiles of which so many are mixed, or as many as can be had.
-  const Stage& stage(std::uint64_t points, const Ask& ask);
+  const Stage& stage(std::uint64_t points, const Ask& ask, Pause* pause);
   /// What the points of the first epoch brought in such tiles: it need not be asked for again.
   void note(std::uint64_t points, std::vector<double> values) { values_[points] = std::move(values); }
 
  private:
-  void begin();
+  void begin(Pause* pause);
   Stage stage_now() const;
   std::vector<double> spreads(std::uint64_t size, const Ask& ask);
 

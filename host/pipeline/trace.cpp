@@ -88,7 +88,7 @@ class Tracer {
 
   /// Saves what was found before the last device failed, and throws its error.
   [[noreturn]] void keep_before(const Error& error) {
-    if (!saver_.writes()) throw error;
+    if (!saver_.writes() || !saver_.has_anything()) throw error;
     saver_.save();
     throw Error(error.code(), error.message() + "; what was found before is saved: --resume goes on from it",
                 error.context());

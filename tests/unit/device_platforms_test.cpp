@@ -76,6 +76,34 @@ TEST_CASE("a device that claims to be CPU and GPU is taken only when asked for")
   CHECK(chosen({kDevices[0], kDevices[2]}, "") == 2);
 }
 
+TEST_CASE("of several CPU runtimes PoCL is the default, whatever the others are called; any is taken by name") {
+  const char* const pocl = "Portable Computing Language";
+  const auto cpu = [](int index, const char* platform, bool fp64 = true) {
+    return made_up(index, "Processor", CL_DEVICE_TYPE_CPU, fp64, platform);
+  };
+  for (const char* other : {"Intel(R) OpenCL", "AMD Accelerated", "Zebra"}) {
+    const std::vector<FoundDevice> first{cpu(0, other), cpu(1, pocl)}, last{cpu(0, pocl), cpu(1, other)};
+    CHECK(choose_devices(first, "").front().info.platform == pocl);
+    CHECK(choose_devices(first, "cpu").front().info.platform == pocl);
+    CHECK(choose_devices(last, "cpu").front().info.platform == pocl);
+    CHECK(choose_devices(first, other).front().info.platform == other);
+    CHECK(choose_devices(first, "0").front().info.platform == other);
+  }
+  // One that cannot compute in double precision is no choice.
+  CHECK(choose_devices({cpu(0, "Intel(R) OpenCL"), cpu(1, pocl, false)}, "cpu").front().info.index == 0);
+  // Where PoCL fails, the next runtime is taken, and that is said.
+  const std::vector<FoundDevice> both{cpu(0, "Intel(R) OpenCL"), cpu(1, pocl)};
+  std::vector<std::string> notes;
+  const auto open = [&](const FoundDevice& found) {
+    if (found.info.platform == pocl) throw Error(ErrorCode::device, "refused", found.info.name);
+    OpenedDevice opened;
+    opened.info = found.info;
+    return opened;
+  };
+  CHECK(open_devices(both, "", open, &notes).front().info.index == 0);
+  CHECK(notes.size() == 1);
+}
+
 TEST_CASE("a choice that cannot be met says what there is") {
   CHECK(error_of({}, "cpu").find("pocl-opencl-icd") != std::string::npos);
   CHECK(error_of({}, "").find("ocl-icd-libopencl1") != std::string::npos);
