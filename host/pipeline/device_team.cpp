@@ -29,7 +29,7 @@ void leave_out(Device::Impl* impl, OpenedDevice* opened, const Error& error) {
 
 /// Slices that lost members left come before those of the block.
 struct DeviceTeam::Task {
-  WorkSource source;
+  WorkSource& source;
   PointBlock block;
   const std::function<bool(double)>& keep_going;
   std::atomic<bool> go{true};
@@ -91,8 +91,8 @@ void DeviceTeam::clear() {
   each([&](Member* m) { m->pass->clear(plan_); });
 }
 
-bool DeviceTeam::run(std::uint64_t items, const PointBlock& block, const std::function<bool(double)>& keep_going) {
-  Task task{WorkSource(items), block, keep_going};
+bool DeviceTeam::run(WorkSource& work, const PointBlock& block, const std::function<bool(double)>& keep_going) {
+  Task task{work, block, keep_going};
   return run(&task);
 }
 
@@ -179,7 +179,8 @@ void DeviceTeam::drain(Sums* sums) {
       m->undrained.clear();
     });
     if (orphans_.empty()) return;
-    Task task{WorkSource(0), {}, always};
+    OwnWork nothing(0);
+    Task task{nothing, {}, always};
     run(&task);
   }
 }

@@ -52,8 +52,8 @@ class DeviceTeam {
              KeptPass* kept);
 
   void set_work(std::uint32_t epoch, const std::vector<std::uint32_t>& views);
-  /// Traces a block. `keep_going` is asked with the share done; when it says no, returns false.
-  bool run(std::uint64_t items, const PointBlock& block, const std::function<bool(double)>& keep_going);
+  /// Traces what `work` gives of a block. `keep_going` is asked with the share done; when it says no, returns false.
+  bool run(WorkSource& work, const PointBlock& block, const std::function<bool(double)>& keep_going);
   /// Adds what was traced since the last drain to *sums.
   void drain(Sums* sums);
   /// Forgets it.

@@ -8,7 +8,7 @@
 
 namespace clray {
 
-PassOutcome solve_pass(const PassPlan& plan, const std::function<ExactPass&()>& make, const TraceOptions& options,
+PassOutcome solve_pass(const PassPlan& plan, const std::function<PointRunner&()>& make, const TraceOptions& options,
                        const TraceHooks& hooks, RunSaver& saver, double time_left_s) {
   PassOutcome out;
   SavedPass& saved = saver.pass(plan);
@@ -34,7 +34,7 @@ PassOutcome solve_pass(const PassPlan& plan, const std::function<ExactPass&()>& 
   if (!saved.complete) {
     OpenStep step = views_of_share(plan, saver.share());
     if (!saved.step.is_same(step)) saved.step = std::move(step);
-    ExactPass& pass = make();
+    PointRunner& pass = make();
     start = now();
     saved.complete = pass.run(&saved.found, &saved.step, keep_going, saver.checkpoint());
     out.seconds = now() - start;

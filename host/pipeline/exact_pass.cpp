@@ -253,6 +253,7 @@ bool ExactPass::run(Sums* sums, OpenStep* step, const std::function<bool(double)
                     const Checkpoint& checkpoint) {
   *sums = step->done > 0 ? step->more : Sums(plan_.layout);
   sums->area_rounding.resize(plan_.beams.views.size());
+  parts_->devices->clear_bins();
   Solver solver(plan_, geometry_, parts_->sights, *parts_->devices, keep_going, sums);
   const bool solved = solver.run(step->from + step->done, step->points, [&](std::size_t end) {
     if (!checkpoint.due || !checkpoint.due()) return;
@@ -265,7 +266,7 @@ bool ExactPass::run(Sums* sums, OpenStep* step, const std::function<bool(double)
   return solved;
 }
 
-/// What devices have found of histograms since the pass began.
+/// What devices have found of histograms since the run began.
 void ExactPass::add_bins(Sums* sums) const {
   take_bins(plan_, parts_->sights, parts_->devices->bins(), sums);
 }

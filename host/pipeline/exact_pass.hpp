@@ -14,18 +14,16 @@
 namespace clray {
 
 /// One program and its buffers on every opened device.
-class ExactPass {
+class ExactPass : public PointRunner {
  public:
   ExactPass(Device& device, const PassPlan& plan, const Geometry& geometry);
-  ~ExactPass();
+  ~ExactPass() override;
 
   /// Solves views step->from to step->points - 1, going on where step->done says, and gives *sums what the detectors
   /// make of them. `keep_going` is asked with the share done. When it says no, returns false: *sums is of no use, and
   /// *step has what was last saved.
-  bool run(Sums* sums, OpenStep* step, const std::function<bool(double)>& keep_going, const Checkpoint& checkpoint);
-
-  /// Seconds spent building programs.
-  double compile_seconds() const { return compile_seconds_; }
+  bool run(Sums* sums, OpenStep* step, const std::function<bool(double)>& keep_going,
+           const Checkpoint& checkpoint) override;
 
  private:
   void add_bins(Sums* sums) const;
@@ -34,7 +32,6 @@ class ExactPass {
   const Geometry& geometry_;
   struct Parts;
   std::unique_ptr<Parts> parts_;
-  double compile_seconds_ = 0.0;
 };
 
 }  // namespace clray

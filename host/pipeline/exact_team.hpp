@@ -43,7 +43,9 @@ class ExactTeam {
   /// Gives a batch to the next device.
   void launch(ItemBatch* batch);
 
-  /// What all groups have brought to the histograms.
+  /// Sets the histograms to zero.
+  void clear_bins() { bins_.assign(bins_.size(), 0); }
+  /// What all groups have brought to the histograms since then.
   const std::vector<i64>& bins() const { return bins_; }
 
  private:

@@ -8,7 +8,6 @@
 
 #include "body/geometry.hpp"
 #include "clray/trace.hpp"
-#include "pipeline/exact_pass.hpp"
 #include "pipeline/outcome.hpp"
 #include "pipeline/pass_runner.hpp"
 #include "pipeline/plan.hpp"
@@ -23,7 +22,7 @@ PassOutcome drive_pass(const Geometry& geometry, const PassPlan& plan, const std
                        const TraceOptions& options, const TraceHooks& hooks, RunSaver& saver, double time_left_s);
 
 /// Solves an exact pass: there is one step, and it ends whole or, where time or an interrupt ends it, without sums.
-PassOutcome solve_pass(const PassPlan& plan, const std::function<ExactPass&()>& make, const TraceOptions& options,
+PassOutcome solve_pass(const PassPlan& plan, const std::function<PointRunner&()>& make, const TraceOptions& options,
                        const TraceHooks& hooks, RunSaver& saver, double time_left_s);
 
 }  // namespace clray

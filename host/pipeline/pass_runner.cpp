@@ -18,8 +18,8 @@ constexpr std::uint32_t kPacketChunk = 256;             // points of each replic
 }  // namespace
 
 PassRunner::PassRunner(Device& device, const PassPlan& plan, const Geometry& geometry, const TraceOptions& options,
-                       KeptPass* kept)
-    : plan_(plan), options_(options) {
+                       KeptPass* kept, const SharedPass& shared)
+    : plan_(plan), options_(options), shared_(shared) {
   const double start = now();
   devices_ = std::make_unique<DeviceTeam>(device, plan, geometry, options, kept);
   compile_seconds_ = now() - start;
@@ -45,8 +45,8 @@ bool PassRunner::run(Sums* sums, OpenStep* step, const std::function<bool(double
       undrained = 0;
     }
     const double start = now();
-    if (!run_block(step->views.size(), static_cast<std::uint32_t>(at), static_cast<std::uint32_t>(count), ask)) {
-      devices_->clear();
+    if (!run_block(*step, static_cast<std::uint32_t>(at), static_cast<std::uint32_t>(count), ask)) {
+      forget();
       return false;
     }
     // A block is what is lost where a run is killed, so it takes a fraction of what lies between two files of sums.
@@ -60,23 +60,54 @@ bool PassRunner::run(Sums* sums, OpenStep* step, const std::function<bool(double
       checkpoint.save();
     }
   }
-  devices_->drain(sums);
+  drain(sums);
   if (step->done > 0) sums->add(plan_.layout, step->more);
   for (const std::uint32_t v : step->views) sums->points[v] = step->points;
   return true;
 }
 
+/// Adds what all have traced since the last time. What a lost process had is traced again.
+void PassRunner::drain(Sums* sums) {
+  devices_->drain(sums);
+  if (shared_.crew == nullptr) return;
+  for (auto lost = shared_.crew->collect(plan_.layout, sums); !lost.empty();
+       lost = shared_.crew->collect(plan_.layout, sums)) {
+    for (const LostRange& one : lost) {
+      OwnWork work(one.range.first + one.range.count, one.range.first);
+      devices_->run(work, one.block, [](double) { return true; });
+    }
+    devices_->drain(sums);
+  }
+}
+
+void PassRunner::forget() {
+  devices_->clear();
+  if (shared_.crew != nullptr) shared_.crew->forget();
+}
+
 /// Sums of an unfinished step stay apart from those of whole steps.
 void PassRunner::drain_into(OpenStep* step, std::uint64_t done) {
   if (step->more.points.empty()) step->more = Sums(plan_.layout);
-  devices_->drain(&step->more);
+  drain(&step->more);
   step->done = done;
 }
 
-bool PassRunner::run_block(std::size_t views, std::uint32_t first_point, std::uint32_t points,
+bool PassRunner::run_block(const OpenStep& step, std::uint32_t first_point, std::uint32_t points,
                            const std::function<bool(double)>& keep_going) {
   const std::uint32_t chunk = std::min(in_packets(plan_) ? kPacketChunk : kChunk, points);
-  return devices_->run(items_of(plan_, views, points, chunk), {first_point, points, chunk}, keep_going);
+  const PointBlock block{first_point, points, chunk};
+  const std::uint64_t items = items_of(plan_, step.views.size(), points, chunk);
+  const auto own = [&](WorkSource& work) { return devices_->run(work, block, keep_going); };
+  if (shared_.crew == nullptr) {
+    OwnWork work(items);
+    return own(work);
+  }
+  CrewTask task;
+  task.pass = shared_.number;
+  task.step = {step.epoch, step.from, step.points, step.views, 0, {}};
+  task.block = block;
+  task.items = items;
+  return shared_.crew->share(task, own, [&] { return keep_going(1.0); });
 }
 
 }  // namespace clray

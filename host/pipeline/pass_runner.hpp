@@ -10,6 +10,7 @@
 
 #include "clray/device.hpp"
 #include "pipeline/course.hpp"
+#include "pipeline/crew.hpp"
 #include "pipeline/device_team.hpp"
 #include "pipeline/plan.hpp"
 #include "pipeline/saved_sums.hpp"
@@ -41,12 +42,12 @@ class PointRunner {
   double compile_seconds_ = 0.0;
 };
 
-/// Traces points as rays: one program and its buffers on every opened device.
+/// Traces points as rays: one program and its buffers on every opened device, of other processes, too.
 class PassRunner : public PointRunner {
  public:
   /// Takes what suits the plan from *kept, and leaves there what the next runner may take.
   PassRunner(Device& device, const PassPlan& plan, const Geometry& geometry, const TraceOptions& options,
-             KeptPass* kept);
+             KeptPass* kept, const SharedPass& shared = {});
   ~PassRunner() override;
 
   /// Adds the points that are missing.
@@ -54,13 +55,16 @@ class PassRunner : public PointRunner {
            const Checkpoint& checkpoint) override;
 
  private:
+  void drain(Sums* sums);
   void drain_into(OpenStep* step, std::uint64_t done);
-  bool run_block(std::size_t views, std::uint32_t first_point, std::uint32_t points,
+  void forget();
+  bool run_block(const OpenStep& step, std::uint32_t first_point, std::uint32_t points,
                  const std::function<bool(double)>& keep_going);
 
   const PassPlan& plan_;
   const TraceOptions& options_;
   std::unique_ptr<DeviceTeam> devices_;
+  const SharedPass shared_;
   std::uint64_t block_points_ = kFirstPoints;  // of the next block, where sums are saved
 };
 

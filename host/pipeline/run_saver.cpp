@@ -22,10 +22,7 @@ void RunSaver::begin(const std::vector<PassPlan>& plans, const Geometry& geometr
   geometry_ = &geometry;
   last_s_ = now();
   std::vector<const SumLayout*> layouts;
-  for (const PassPlan& plan : plans) {
-    if (plan.first) plans_.push_back(&plan.first->plan);
-    plans_.push_back(&plan);
-  }
+  plans_ = passes_of(plans);
   for (const PassPlan* plan : plans_) layouts.push_back(&plan->layout);
   std::vector<SavedSums> found;
   for (const std::string& name : saving_.from) {

@@ -9,7 +9,6 @@
 #include "clray/error.hpp"
 #include "device/embedded.hpp"
 #include "pipeline/pass_buffers.hpp"
-#include "text/bytes.hpp"
 #include "text/hash.hpp"
 
 namespace clray {
@@ -69,6 +68,8 @@ void get(BytesReader& in, PagedNumbers<Narrow, Wide>* numbers) {
   }
 }
 
+}  // namespace
+
 void put(BytesWriter& out, const Sums& sums) {
   put(out, sums.values);
   put(out, sums.counts);
@@ -94,6 +95,8 @@ Sums get_sums(BytesReader& in) {
   sums.area_rounding = in.reals();
   return sums;
 }
+
+namespace {
 
 void put(BytesWriter& out, const SavedPass& pass) {
   out.number(pass.fingerprint);
@@ -174,6 +177,15 @@ std::uint64_t kernels_sum() {
 }
 
 }  // namespace
+
+std::vector<const PassPlan*> passes_of(const std::vector<PassPlan>& plans) {
+  std::vector<const PassPlan*> passes;
+  for (const PassPlan& plan : plans) {
+    if (plan.first) passes.push_back(&plan.first->plan);
+    passes.push_back(&plan);
+  }
+  return passes;
+}
 
 std::uint64_t fingerprint_of(const PassPlan& plan, const Geometry& geometry) {
   PassBuffers in(plan, geometry);

@@ -12,6 +12,7 @@
 #include "clray/saved.hpp"
 #include "pipeline/plan.hpp"
 #include "pipeline/sums.hpp"
+#include "text/bytes.hpp"
 
 namespace clray {
 
@@ -55,9 +56,16 @@ struct SavedSums {
   std::vector<SavedPass> passes;
 };
 
+/// The passes of a run in their order.
+std::vector<const PassPlan*> passes_of(const std::vector<PassPlan>& plans);
+
 /// What decides a pass's sums: every number that kernels are given, the layout, and the kernels. Neither the device nor
 /// the tree nor when to stop is among it.
 std::uint64_t fingerprint_of(const PassPlan& plan, const Geometry& geometry);
+
+/// Sums as bytes, in a file or a message, and back. Throws Error(input) for what cannot be.
+void put(text::BytesWriter& out, const Sums& sums);
+Sums get_sums(text::BytesReader& in);
 
 /// What a file begins with.
 constexpr std::string_view kSavedMagic = "clray sums\n";

@@ -12,8 +12,11 @@
 #include "clray/error.hpp"
 #include "clray/pass.hpp"
 #include "clray/prepared.hpp"
+#include "clray/ranks.hpp"
 #include "clray/result.hpp"
 #include "pipeline/clock.hpp"
+#include "pipeline/crew.hpp"
+#include "pipeline/crew_member.hpp"
 #include "pipeline/exact_pass.hpp"
 #include "pipeline/method.hpp"
 #include "pipeline/outcome.hpp"
@@ -22,6 +25,7 @@
 #include "pipeline/plan.hpp"
 #include "pipeline/preparation.hpp"
 #include "pipeline/run_saver.hpp"
+#include "pipeline/shared_views.hpp"
 #include "pipeline/tiles_runner.hpp"
 #include "pipeline/warnings.hpp"
 #include "text/hash.hpp"
@@ -48,8 +52,8 @@ void add_unique(const std::vector<std::string>& from, std::vector<std::string>* 
 /// Traces the passes of a scene one by one and makes their result.
 class Tracer {
  public:
-  Tracer(Preparation& kept, const Scene& scene, const TraceHooks& hooks, const Saving& saving)
-      : kept_(kept), device_(kept.device()), scene_(scene), hooks_(hooks), saver_(saving) {}
+  Tracer(Preparation& kept, const Scene& scene, const TraceHooks& hooks, const Saving& saving, Ranks* ranks)
+      : kept_(kept), device_(kept.device()), scene_(scene), hooks_(hooks), saver_(saving), ranks_(ranks) {}
 
   Result run() {
     result_.instants = pass_instants(scene_);
@@ -63,7 +67,13 @@ class Tracer {
     result_.extent_m = geometry.extent;
     result_.seconds.bvh = now() - start;
     result_.digest = kFnvStart;
+    passes_ = passes_of(planned.plans);
+    if (ranks_ != nullptr && ranks_->number() != 0) {
+      help_with_run(*ranks_, device_, passes_, geometry, scene_.trace);
+      return {};
+    }
     saver_.begin(planned.plans, geometry);
+    if (ranks_ != nullptr) crew_ = std::make_unique<Crew>(*ranks_, fingerprints(geometry));
     try {
       take_passes(planned);
     } catch (const Error& error) {
@@ -76,6 +86,23 @@ class Tracer {
   }
 
  private:
+  std::vector<std::uint64_t> fingerprints(const Geometry& geometry) const {
+    std::vector<std::uint64_t> all;
+    for (const PassPlan* plan : passes_) all.push_back(fingerprint_of(*plan, geometry));
+    return all;
+  }
+
+  SharedPass shared(const PassPlan& plan) const {
+    const auto at = std::find(passes_.begin(), passes_.end(), &plan);
+    return {crew_.get(), static_cast<std::uint32_t>(at - passes_.begin())};
+  }
+
+  /// Shares the views of a pass that takes them as a whole.
+  std::unique_ptr<PointRunner> by_views(std::unique_ptr<PointRunner> own, const PassPlan& plan) const {
+    if (crew_ == nullptr) return own;
+    return std::make_unique<SharedViews>(std::move(own), plan, shared(plan));
+  }
+
   void take_passes(const Planned& planned) {
     const Geometry& geometry = planned.geometry;
     for (std::size_t k = 0; k < planned.plans.size(); ++k) {
@@ -98,7 +125,7 @@ class Tracer {
   PassOutcome outcome_of(const PassPlan& plan, const Geometry& geometry, KeptPass* kept, double time_left_s) {
     if (plan.request.exact()) return solved(plan, geometry, time_left_s);
     if (plan.request.tiles()) {
-      const auto make = [&] { return std::make_unique<TilesRunner>(device_, plan, geometry); };
+      const auto make = [&] { return by_views(std::make_unique<TilesRunner>(device_, plan, geometry), plan); };
       return driven(plan, geometry, make, time_left_s);
     }
     const double before = spent_;
@@ -109,16 +136,18 @@ class Tracer {
     }
     const double solving = spent_ - before;
     if (time_left_s > 0.0) time_left_s = std::max(1e-6, time_left_s - solving);
-    const auto make = [&] { return std::make_unique<PassRunner>(device_, plan, geometry, scene_.trace, kept); };
+    const auto make = [&] {
+      return std::make_unique<PassRunner>(device_, plan, geometry, scene_.trace, kept, shared(plan));
+    };
     PassOutcome outcome = driven(plan, geometry, make, time_left_s);
     for (ErrorPoint& point : outcome.errors) point.seconds += solving;
     return outcome;
   }
 
   PassOutcome solved(const PassPlan& plan, const Geometry& geometry, double time_left_s) {
-    std::unique_ptr<ExactPass> pass;
-    const auto make = [&]() -> ExactPass& {
-      pass = std::make_unique<ExactPass>(device_, plan, geometry);
+    std::unique_ptr<PointRunner> pass;
+    const auto make = [&]() -> PointRunner& {
+      pass = by_views(std::make_unique<ExactPass>(device_, plan, geometry), plan);
       result_.seconds.compile += pass->compile_seconds();
       return *pass;
     };
@@ -201,6 +230,7 @@ class Tracer {
           "order is hit; remove the others",
           text::counted(geometry.conflicts, "face")));
     std::vector<std::string> early = device_.impl().notes;
+    if (crew_ != nullptr) add_unique(crew_->notes(), &early);
     add_unique(std::move(result_.warnings), &early);
     add_warnings(scene_, ending_, lit_, &result_);
     result_.warnings.insert(result_.warnings.end(), early.begin(), early.end());
@@ -217,12 +247,16 @@ class Tracer {
   Ending ending_;
   LitRecords lit_;
   RunSaver saver_;
+  Ranks* ranks_;
+  std::vector<const PassPlan*> passes_;
+  std::unique_ptr<Crew> crew_;
 };
 
-Result trace_with(Preparation& kept, const Scene& scene, const TraceHooks& hooks, const Saving& saving = {}) {
+Result trace_with(Preparation& kept, const Scene& scene, const TraceHooks& hooks, const Saving& saving = {},
+                  Ranks* ranks = nullptr) {
   check_scene(scene);
   try {
-    return Tracer(kept, scene, hooks, saving).run();
+    return Tracer(kept, scene, hooks, saving, ranks).run();
   } catch (...) {
     kept.drop_passes();  // their sums may be anything
     throw;
@@ -289,6 +323,19 @@ Result trace(const Scene& scene, Device& device, const TraceHooks& hooks) {
 Result trace(const Scene& scene, Device& device, const TraceHooks& hooks, const Saving& saving) {
   Preparation kept(device);
   return trace_with(kept, scene, hooks, saving);
+}
+
+Result trace(const Scene& scene, Device& device, const TraceHooks& hooks, const Saving& saving, Ranks& ranks) {
+  Preparation kept(device);
+  try {
+    return trace_with(kept, scene, hooks, saving, ranks.count() > 1 ? &ranks : nullptr);
+  } catch (const Error& error) {
+    leave_run(ranks, error.what());
+    throw;
+  } catch (...) {
+    leave_run(ranks, "what a callback threw");
+    throw;
+  }
 }
 
 std::string kernel_source(const Scene& scene, Device& device) {

@@ -19,18 +19,30 @@ struct WorkRange {
 class WorkSource {
  public:
   explicit WorkSource(std::uint64_t items) : items_(items) {}
+  virtual ~WorkSource() = default;
 
-  /// The next `most` items, or what is left of them; none when all are taken.
-  std::optional<WorkRange> take(std::uint64_t most) {
-    const std::uint64_t first = next_.fetch_add(most);
-    if (first >= items_) return std::nullopt;
-    return WorkRange{first, std::min(most, items_ - first)};
-  }
+  /// At most `most` items; none when all are taken.
+  virtual std::optional<WorkRange> take(std::uint64_t most) = 0;
   std::uint64_t items() const { return items_; }
 
  private:
   const std::uint64_t items_;
-  std::atomic<std::uint64_t> next_{0};
+};
+
+/// The items of this process, one range behind the other.
+class OwnWork : public WorkSource {
+ public:
+  /// Items `first` … `end` - 1.
+  explicit OwnWork(std::uint64_t end, std::uint64_t first = 0) : WorkSource(end), next_(first) {}
+
+  std::optional<WorkRange> take(std::uint64_t most) override {
+    const std::uint64_t first = next_.fetch_add(most);
+    if (first >= items()) return std::nullopt;
+    return WorkRange{first, std::min(most, items() - first)};
+  }
+
+ private:
+  std::atomic<std::uint64_t> next_;
 };
 
 }  // namespace clray
