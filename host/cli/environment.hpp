@@ -8,7 +8,7 @@
 namespace clray::cli {
 
 /// Sets PoCL's variables; made before the first thread and the first OpenCL call. PoCL's handler would turn a host
-/// division by zero into 0.
+/// division by zero into 0. The ranks of a node share its cores.
 class Environment {
  public:
   Environment();

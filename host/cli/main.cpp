@@ -16,12 +16,15 @@
 #include "clray/error.hpp"
 #include "clray/keys.hpp"
 #include "clray/pass.hpp"
+#include "clray/ranks.hpp"
 #include "clray/result.hpp"
 #include "clray/saved.hpp"
 #include "clray/session.hpp"
 #include "clray/sizes.hpp"
 #include "clray/write.hpp"
+#include "cluster/job.hpp"
 #include "environment.hpp"
+#include "helper.hpp"
 #include "report.hpp"
 #include "signals.hpp"
 #include "text/text.hpp"
@@ -94,8 +97,8 @@ std::shared_ptr<std::string> range_with_station(const Scene& scene, Device& devi
 class Run {
  public:
   Run(const cli::Arguments& arguments, const Scene& scene, cli::Signals& signals, cli::KernelFolder& kernels,
-      Warnings& warnings)
-      : arguments_(arguments), scene_(scene), signals_(signals), kernels_(kernels), warnings_(warnings) {}
+      cluster::Job* job, Warnings& warnings)
+      : arguments_(arguments), scene_(scene), signals_(signals), kernels_(kernels), job_(job), warnings_(warnings) {}
 
   int trace_and_write(Clock::time_point start, double load_s) {
     const std::string asked = output_folder(arguments_, scene_);
@@ -103,7 +106,7 @@ class Run {
     if (const std::string fault = size_fault(scene_, asked); !fault.empty()) throw Error(ErrorCode::output, fault);
     if (!arguments_.reference.empty()) reference_ = load_reference(arguments_.reference);
     prepare_saving(asked);
-    Device device(arguments_.device);
+    Device device(arguments_.device, job_ != nullptr ? NodePlace{job_->on_node(), job_->of_node()} : NodePlace{});
     Result result = traced(device);
     warnings_.show(result.warnings);
     if (saving_.share.of > 1) return say_share(result);
@@ -167,6 +170,7 @@ class Run {
       bar.show(progress);
     };
     hooks.stop = &signals_.stop();
+    if (job_ != nullptr) return trace(scene_, device, hooks, saving_, *job_);
     return trace(scene_, device, hooks, saving_);
   }
 
@@ -196,6 +200,7 @@ class Run {
     } else {
       print(cli::closing_table(result, scene_, folder, files, arguments_.reference.empty() ? nullptr : &reference_));
       if (!ranging->empty()) print("\n" + *ranging);
+      if (job_ != nullptr) print(cli::ranks_line(job_->count(), job_->bytes()));
     }
   }
 
@@ -203,6 +208,7 @@ class Run {
   const Scene& scene_;
   cli::Signals& signals_;
   cli::KernelFolder& kernels_;
+  cluster::Job* job_;
   Warnings& warnings_;
   Reference reference_;
   Saving saving_;
@@ -228,7 +234,7 @@ int verify_sums(const cli::Arguments& arguments, const Scene& scene, cli::Signal
   throw Error(ErrorCode::bug, "not the same: " + compared + ", of which some differ", file);
 }
 
-int run(int argc, char** argv, cli::Signals& signals, cli::KernelFolder& kernels) {
+int run(int argc, char** argv, cli::Signals& signals, cli::KernelFolder& kernels, cluster::Job* job) {
   const auto start = Clock::now();
   const auto arguments = cli::parse_arguments(argc, argv);
   if (arguments.finished) return 0;
@@ -253,7 +259,7 @@ int run(int argc, char** argv, cli::Signals& signals, cli::KernelFolder& kernels
     return 0;
   }
   if (arguments.verb == "verify") return verify_sums(arguments, scene, signals);
-  return Run(arguments, scene, signals, kernels, warnings).trace_and_write(start, seconds_since(start));
+  return Run(arguments, scene, signals, kernels, job, warnings).trace_and_write(start, seconds_since(start));
 }
 
 int fault(const char* format, const std::string& words, ErrorCode code) {
@@ -262,10 +268,25 @@ int fault(const char* format, const std::string& words, ErrorCode code) {
   return static_cast<int>(code);
 }
 
+/// Whatever ends rank 0, the others wait for it no longer.
+struct EndOfRun {
+  cluster::Job* job;
+  ~EndOfRun() {
+    if (job != nullptr) leave_run(*job, {});
+  }
+};
+
 /// Every error as an exit status.
 int run_with_errors(int argc, char** argv, cli::Signals& signals, cli::KernelFolder& kernels) {
+  std::unique_ptr<cluster::Job> job;
   try {
-    const int status = run(argc, argv, signals, kernels);
+    job = cluster::join_job();
+    if (job != nullptr && job->number() != 0) {
+      cli::help_rank_0(argc, argv, *job, kernels);
+      return 0;
+    }
+    const EndOfRun end{job.get()};
+    const int status = run(argc, argv, signals, kernels, job.get());
     flush_output();
     return status;
   } catch (const Error& error) {

@@ -125,6 +125,10 @@ std::string rays_row(const Result& result) {
 
 }  // namespace
 
+std::string ranks_line(std::uint32_t ranks, std::uint64_t bytes) {
+  return fmt::format("shared by {} ranks; {:.3g} MB came to rank 0\n", ranks, 1e-6 * static_cast<double>(bytes));
+}
+
 std::string closing_table(const Result& result, const Scene& scene, const std::string& folder,
                           const std::vector<std::string>& files, const Reference* reference) {
   Columns table;

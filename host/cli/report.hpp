@@ -37,4 +37,7 @@ std::string explanation(const Result& result);
 std::string closing_table(const Result& result, const Scene& scene, const std::string& folder,
                           const std::vector<std::string>& files, const Reference* reference);
 
+/// What a job of several ranks says behind its result.
+std::string ranks_line(std::uint32_t ranks, std::uint64_t bytes);
+
 }  // namespace clray::cli

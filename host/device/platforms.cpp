@@ -212,6 +212,22 @@ std::vector<FoundDevice> choose_devices(const std::vector<FoundDevice>& devices,
   return chosen;
 }
 
+std::vector<FoundDevice> deal_devices(const std::vector<FoundDevice>& devices, const std::string& choice,
+                                      NodePlace place) {
+  std::vector<FoundDevice> chosen = choose_devices(devices, choice);
+  if (place.of <= 1) return chosen;
+  if (choice == "gpu" || (choice.empty() && (chosen.front().type & CL_DEVICE_TYPE_GPU) != 0)) {
+    const auto all = select(of_type(devices, CL_DEVICE_TYPE_GPU, false), [](const auto& d) { return d.info.fp64; });
+    if (!all.empty()) chosen = all;
+  } else if (choice != "all") {
+    return chosen;
+  }
+  if (place.of >= chosen.size()) return {chosen[place.number % chosen.size()]};
+  std::vector<FoundDevice> dealt;
+  for (std::size_t k = place.number; k < chosen.size(); k += place.of) dealt.push_back(chosen[k]);
+  return dealt;
+}
+
 OpenedDevice open_device(const FoundDevice& found) {
   return with_cl_errors(found.info.name, [&] {
     OpenedDevice opened;
@@ -232,9 +248,9 @@ OpenedDevice open_device(const FoundDevice& found) {
 }
 
 std::vector<OpenedDevice> open_devices(const std::vector<FoundDevice>& devices, const std::string& choice,
-                                       const std::function<OpenedDevice(const FoundDevice&)>& open,
+                                       NodePlace place, const std::function<OpenedDevice(const FoundDevice&)>& open,
                                        std::vector<std::string>* notes) {
-  std::vector<FoundDevice> chosen = choose_devices(devices, choice);
+  std::vector<FoundDevice> chosen = deal_devices(devices, choice, place);
   const std::size_t asked = chosen.size();
   if (choice.empty()) {
     for (const FoundDevice& cpu : of_type(devices, CL_DEVICE_TYPE_CPU, false)) {
@@ -265,13 +281,13 @@ std::vector<DeviceInfo> list_devices() {
   return list;
 }
 
-Device::Device(const std::string& choice) : impl_(std::make_unique<Impl>()) {
+Device::Device(const std::string& choice, NodePlace place) : impl_(std::make_unique<Impl>()) {
   const auto open = [](const FoundDevice& found) {
     OpenedDevice opened = open_device(found);
     run_self_test(opened);
     return opened;
   };
-  impl_->devices = open_devices(find_devices(), choice, open, &impl_->notes);
+  impl_->devices = open_devices(find_devices(), choice, place, open, &impl_->notes);
 }
 Device::~Device() = default;
 Device::Device(Device&&) noexcept = default;

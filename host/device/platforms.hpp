@@ -24,6 +24,10 @@ std::vector<FoundDevice> find_devices();
 /// of a name fits different devices, or when what was chosen lacks fp64.
 std::vector<FoundDevice> choose_devices(const std::vector<FoundDevice>& devices, const std::string& choice);
 
+/// Those of them that a process at a place takes, see Device.
+std::vector<FoundDevice> deal_devices(const std::vector<FoundDevice>& devices, const std::string& choice,
+                                      NodePlace place);
+
 /// "cpu", "gpu", "accelerator", "custom" joined by "+", from OpenCL's bit mask.
 std::string device_type_name(cl_device_type type);
 
@@ -34,7 +38,7 @@ OpenedDevice open_device(const FoundDevice& found);
 /// those that fail are left out. A default device that fails gives way to the CPU, one that was asked for does not.
 /// *notes gets a sentence for each that was left out. Throws the error where none is left.
 std::vector<OpenedDevice> open_devices(const std::vector<FoundDevice>& devices, const std::string& choice,
-                                       const std::function<OpenedDevice(const FoundDevice&)>& open,
+                                       NodePlace place, const std::function<OpenedDevice(const FoundDevice&)>& open,
                                        std::vector<std::string>* notes);
 
 }  // namespace clray

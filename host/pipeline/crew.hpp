@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The processes of a run (clray/ranks.hpp), as rank 0 sees them. It alone follows the courses; the others are given
-// ranges of its steps and hand over their sums when a step ends or is saved. A thread answers them, so that nobody waits
-// while rank 0 traces. Sums are integers: nobody can tell who did what. crew_member.hpp is the other side.
+// ranges of its steps and hand over their sums when a step ends or is saved. A thread answers them, so that nobody
+// waits while rank 0 traces. Sums are integers: nobody can tell who did what. crew_member.hpp is the other side.
 #pragma once
 
 #include <condition_variable>

@@ -99,8 +99,7 @@ class Inbox {
 /// The items that rank 0 gives.
 class GivenWork : public WorkSource {
  public:
-  GivenWork(Inbox& inbox, std::uint64_t task, std::uint64_t items)
-      : WorkSource(items), inbox_(inbox), task_(task) {}
+  GivenWork(Inbox& inbox, std::uint64_t task, std::uint64_t items) : WorkSource(items), inbox_(inbox), task_(task) {}
 
   std::optional<WorkRange> take(std::uint64_t most) override { return inbox_.ask(task_, most); }
 

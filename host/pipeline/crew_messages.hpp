@@ -15,7 +15,8 @@
 namespace clray {
 
 /// From rank 0: a task; a range of it, empty where nothing is left; hand over what was found; forget it; the run is
-/// over. To rank 0: fingerprints of the passes; asking for so many items; the task's ranges are done; sums; what failed.
+/// over. To rank 0: fingerprints of the passes; asking for so many items; the task's ranges are done; sums; what
+/// failed.
 enum class CrewWord : char {
   task = 'j',
   range = 'r',

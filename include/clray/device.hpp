@@ -34,6 +34,12 @@ std::string kernel_cache_folder();
 /// Whether it can be written; it is made if it is missing.
 bool kernel_cache_writable();
 
+/// The place of a process among those of its machine that share the devices there, each taking some.
+struct NodePlace {
+  unsigned number = 0;  ///< 0 … of - 1
+  unsigned of = 1;      ///< processes
+};
+
 /// A device (or, for "all", several) opened for tracing, self-test passed.
 ///
 /// Threads: any number may open devices at once, and each may trace on its own. Calls on one and the same Device wait
@@ -46,7 +52,9 @@ class Device {
  public:
   /// `choice`: "cpu", "gpu", "all", an index, part of a name, or "" for a GPU if there is one, else the CPU.
   /// Throws Error(device) when there is none such, it lacks fp64, or it fails the self-test.
-  explicit Device(const std::string& choice = {});
+  /// Of "all", "gpu" and GPUs by default, each process at a `place` takes its part, so that none is idle; where there
+  /// are fewer devices than processes, some serve several.
+  explicit Device(const std::string& choice = {}, NodePlace place = {});
   ~Device();
   /// Moves what is opened; the other may then be assigned to or destroyed.
   Device(Device&&) noexcept;

@@ -61,10 +61,12 @@ inline std::string program() {
 /// A program running in the background, for signals.
 class Running {
  public:
+  /// `launcher`: the words of a program that starts it.
   Running(const Scratch& scratch, const std::vector<std::string>& arguments,
-          const std::vector<std::string>& environment = {})
+          const std::vector<std::string>& environment = {}, const std::vector<std::string>& launcher = {})
       : scratch_(scratch) {
-    std::vector<std::string> words{program()};
+    std::vector<std::string> words = launcher;
+    words.push_back(program());
     words.insert(words.end(), arguments.begin(), arguments.end());
     child_ = ::fork();
     if (child_ == 0) start(words, environment);
@@ -73,6 +75,7 @@ class Running {
   void send(int signal) const { ::kill(child_, signal); }
   /// To it and to all that it started, as a terminal does.
   void send_to_group(int signal) const { ::kill(-child_, signal); }
+  pid_t id() const { return child_; }
   bool alive() const {
     siginfo_t info{};
     return ::waitid(P_PID, static_cast<id_t>(child_), &info, WEXITED | WNOHANG | WNOWAIT) == 0 && info.si_pid == 0;

@@ -68,6 +68,26 @@ TEST_CASE("choice of a device") {
   CHECK(all[2].info.index == 4);
 }
 
+TEST_CASE("processes of one machine deal its devices among them, or share them where there are too few") {
+  const auto dealt = [](const std::string& choice, unsigned number, unsigned of) {
+    std::vector<int> indices;
+    for (const FoundDevice& found : deal_devices(kDevices, choice, {number, of})) indices.push_back(found.info.index);
+    return indices;
+  };
+  CHECK(dealt("all", 0, 1) == std::vector<int>{2, 3, 4});
+  CHECK(dealt("all", 0, 2) == std::vector<int>{2, 4});
+  CHECK(dealt("all", 1, 2) == std::vector<int>{3});
+  CHECK(dealt("all", 4, 5) == std::vector<int>{3});
+  for (const std::string choice : {"", "gpu"}) {
+    CHECK(dealt(choice, 0, 1) == std::vector<int>{3});
+    CHECK(dealt(choice, 0, 4) == std::vector<int>{3});
+    CHECK(dealt(choice, 1, 4) == std::vector<int>{4});
+    CHECK(dealt(choice, 2, 4) == std::vector<int>{3});
+  }
+  CHECK(dealt("cpu", 1, 2) == std::vector<int>{2});
+  CHECK(dealt("4", 0, 2) == std::vector<int>{4});
+}
+
 TEST_CASE("a device that claims to be CPU and GPU is taken only when asked for") {
   const std::vector<FoundDevice> simulator = {kDevices[0]};
   CHECK(error_of(simulator, "").find("choose one by name or index: 0 Simulator (cpu+gpu, Oclgrind)") !=
@@ -130,7 +150,7 @@ TEST_CASE(
   const auto opened = [&](const std::string& choice, const std::string& broken) {
     notes.clear();
     std::vector<int> indices;
-    for (const OpenedDevice& device : open_devices(kDevices, choice, open_but(broken), &notes))
+    for (const OpenedDevice& device : open_devices(kDevices, choice, {}, open_but(broken), &notes))
       indices.push_back(device.info.index);
     return indices;
   };
