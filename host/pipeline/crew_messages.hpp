@@ -103,7 +103,7 @@ inline WorkRange range_of(const std::string& bytes) {
 inline std::string to_bytes(const Sums& sums) {
   text::BytesWriter out;
   put(out, sums);
-  return out.bytes();
+  return out.take();
 }
 
 inline Sums sums_of(const std::string& bytes) {

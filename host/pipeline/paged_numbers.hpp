@@ -43,6 +43,12 @@ class PagedNumbers {
     page.wide[i % kPage] = value;
   }
 
+  /// i, or the first number behind it whose page takes memory; size() where there is none.
+  std::size_t next(std::size_t i) const {
+    while (i < size_ && pages_[i / kPage].narrow.empty() && pages_[i / kPage].wide.empty()) i = (i / kPage + 1) * kPage;
+    return std::min(i, size_);
+  }
+
   void add(std::size_t i, Wide more) {
     if (more != 0) set(i, (*this)[i] + more);
   }

@@ -20,29 +20,26 @@ constexpr std::uint64_t kPage = 1024;  // numbers of a page of a file
 using text::BytesReader;
 using text::BytesWriter;
 
-template <class Wide>
-void put_wide(BytesWriter& out, Wide value, int bytes) {
-  out.number(static_cast<std::uint64_t>(value));
-  if (bytes == 16) out.number(static_cast<std::uint64_t>(static_cast<unsigned __int128>(value) >> 64));
-}
-
 template <class Narrow, class Wide>
 void put(BytesWriter& out, const PagedNumbers<Narrow, Wide>& numbers) {
   out.number(numbers.size());
   for (std::uint64_t first = 0; first < numbers.size(); first += kPage) {
-    const std::uint64_t end = std::min<std::uint64_t>(first + kPage, numbers.size());
+    const std::uint64_t count = std::min<std::uint64_t>(kPage, numbers.size() - first);
     int kind = 0;
-    for (std::uint64_t k = first; k < end && kind < 2; ++k) {
+    for (std::uint64_t k = numbers.next(first); k < first + count && kind < 2; ++k) {
       const Wide value = numbers[k];
       if (value != 0) kind = static_cast<Wide>(static_cast<Narrow>(value)) == value ? std::max(kind, 1) : 2;
     }
     out.number(static_cast<std::uint64_t>(kind), 1);
-    for (std::uint64_t k = first; k < end && kind > 0; ++k) {
-      if (kind == 1) {
-        out.number(static_cast<std::uint64_t>(static_cast<Narrow>(numbers[k])), sizeof(Narrow));
-      } else {
-        put_wide(out, numbers[k], sizeof(Wide));
-      }
+    if (kind == 1)
+      out.many<sizeof(Narrow)>(
+          count, [&](std::uint64_t k) { return static_cast<std::uint64_t>(static_cast<Narrow>(numbers[first + k])); });
+    if (kind == 2) {
+      constexpr std::uint64_t kWords = sizeof(Wide) / 8;
+      out.many<8>(kWords * count, [&](std::uint64_t k) {
+        return static_cast<std::uint64_t>(static_cast<unsigned __int128>(numbers[first + k / kWords]) >>
+                                          (64 * (k % kWords)));
+      });
     }
   }
 }
@@ -53,17 +50,20 @@ void get(BytesReader& in, PagedNumbers<Narrow, Wide>* numbers) {
   if (size / kPage > in.left()) in.fail();
   *numbers = PagedNumbers<Narrow, Wide>(size);
   for (std::uint64_t first = 0; first < size; first += kPage) {
-    const std::uint64_t end = std::min(first + kPage, size);
+    const std::uint64_t count = std::min<std::uint64_t>(kPage, size - first);
     const std::uint64_t kind = in.number(1);
     if (kind > 2) in.fail();
-    for (std::uint64_t k = first; k < end && kind > 0; ++k) {
-      if (kind == 1) {
-        numbers->set(k, static_cast<Wide>(static_cast<Narrow>(in.number(sizeof(Narrow)))));
-      } else {
-        auto value = static_cast<unsigned __int128>(in.number());
-        if (sizeof(Wide) == 16) value |= static_cast<unsigned __int128>(in.number()) << 64;
-        numbers->set(k, static_cast<Wide>(value));
-      }
+    if (kind == 1)
+      in.many<sizeof(Narrow)>(count, [&](std::uint64_t k, std::uint64_t number) {
+        numbers->set(first + k, static_cast<Wide>(static_cast<Narrow>(number)));
+      });
+    if (kind == 2) {
+      constexpr std::uint64_t kWords = sizeof(Wide) / 8;
+      unsigned __int128 value = 0;
+      in.many<8>(kWords * count, [&](std::uint64_t k, std::uint64_t number) {
+        value = k % kWords == 0 ? number : value | static_cast<unsigned __int128>(number) << 64;
+        if (k % kWords == kWords - 1) numbers->set(first + k / kWords, static_cast<Wide>(value));
+      });
     }
   }
 }

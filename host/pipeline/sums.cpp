@@ -54,10 +54,12 @@ bool Sums::empty() const {
 }
 
 void Sums::add(const SumLayout& layout, const Sums& more) {
-  for (std::uint64_t k = 0; k < layout.values; ++k) values.add(k, more.values[k]);
+  for (std::uint64_t k = more.values.next(0); k < layout.values; k = more.values.next(k + 1))
+    values.add(k, more.values[k]);
   for (const SumBlock& block : layout.blocks) {
     if (!block.counts()) continue;
-    for (std::uint64_t k = block.offset; k < block.offset + block.size(); ++k) {
+    const std::uint64_t end = block.offset + block.size();
+    for (std::uint64_t k = more.counts.next(block.offset); k < end; k = more.counts.next(k + 1)) {
       if (block.scale != SumScale::greatest) {
         counts.add(k, more.counts[k]);
       } else if (more.counts[k] > counts[k]) {

@@ -118,7 +118,8 @@ Shared shared(const clray::Scene& scene, std::uint32_t ranks, int good = 1 << 30
 std::vector<Case> some_cases() {
   std::vector<Case> some;
   for (const Case& c : cases()) {
-    if (long_tests() || c.name == "points" || c.name == "exact" || c.name == "tiles to a target") some.push_back(c);
+    if (long_tests() || c.name == "points" || c.name == "exact" || c.name == "tiles seen from elsewhere")
+      some.push_back(c);
   }
   return some;
 }
