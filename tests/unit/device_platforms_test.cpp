@@ -120,7 +120,7 @@ TEST_CASE("of several CPU runtimes PoCL is the default, whatever the others are 
     opened.info = found.info;
     return opened;
   };
-  CHECK(open_devices(both, "", open, &notes).front().info.index == 0);
+  CHECK(open_devices(both, "", {}, open, &notes).front().info.index == 0);
   CHECK(notes.size() == 1);
 }
 
