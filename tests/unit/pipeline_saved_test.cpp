@@ -32,7 +32,7 @@ Sums some_sums(unsigned seed) {
   Sums sums(layout());
   for (std::uint64_t k = 0; k < sums.values.size(); ++k) {
     const auto value = static_cast<Sum>(static_cast<std::int64_t>(random()));
-    if (k > 3000) sums.values.set(k, k % 1000 == 7 ? (value << 40) - 1 : k % 3 == 0 ? value : 0);
+    if (k > 3000) sums.values.set(k, k % 1000 == 7 ? value * (Sum{1} << 40) - 1 : k % 3 == 0 ? value : 0);
   }
   for (std::uint64_t k = 0; k < sums.counts.size(); ++k) sums.counts.set(k, random() >> (k % 2 == 0 ? 40 : 20));
   sums.events[1][2] = random();
