@@ -331,6 +331,7 @@ Beams stratified(Beams beams, const Scene& scene, const Geometry& geometry, cons
     if (cells.empty()) continue;
     Stratifier(geometry, steering, beams, v, grid)
         .run(cells, order, scene.reference_point, &beams.strata, &view, &beams.area_m2[v]);
+    if (v == 0) beams.strata.reserve(beams.strata.size() * (beams.views.size() + beams.views.size() / 8));
   }
   return beams;
 }

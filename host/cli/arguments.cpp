@@ -37,7 +37,7 @@ constexpr const char* kFooter =
 /// The options' texts, before they are parsed as values.
 struct Texts {
   std::optional<std::string> rays, target, time, source, observer, bins, bounces, seed, unit, group, slice, sampler,
-      format, method, walk, checkpoint, share;
+      format, method, walk, checkpoint, share, memory;
 };
 
 /// "; did you mean --x?" for an option that comes near, else nothing.
@@ -130,6 +130,9 @@ void add_options(CLI::App& app, Arguments& a, Texts& t) {
 
   text_option(app, "--device", a.device, "cpu|gpu|all|INDEX|NAME",
               "where to compute, by kind, number or part of the name [a GPU if there is one, else the CPU]", run);
+  text_option(app, "--memory", t.memory, "SIZE",
+              "memory that host and device may take, such as 800M or 4G; known before tracing [as much as there is]",
+              run);
   text_option(app, "--method", t.method, "NAME", key_help("trace", "method"), run);
   text_option(app, "--rays", t.rays, "N", key_help("trace", "rays", "such as 65536, 1e6, 2^22, 4M"), run);
   text_option(app, "--target-error", t.target, "P%",
@@ -222,6 +225,7 @@ void parse_values(Arguments& a, const Texts& t) {
   if (t.bounces) a.max_bounces = static_cast<int>(count_for_key("max_bounces", *t.bounces, "--max-bounces"));
   if (t.group) a.work_group = static_cast<int>(count_up_to(1024, *t.group, "--work-group"));
   if (t.slice) a.slice_points = count_up_to(std::numeric_limits<std::uint64_t>::max(), *t.slice, "--slice-points");
+  if (t.memory) a.memory_bytes = parse_bytes(*t.memory, "--memory");
   if (t.checkpoint) a.checkpoint_s = parse_duration(*t.checkpoint, "--checkpoint");
   if (t.share) a.share = parse_share(*t.share, "--shard");
   if (t.seed) a.seed = count_for_key("seed", *t.seed, "--seed");

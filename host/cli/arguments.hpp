@@ -34,6 +34,7 @@ struct Arguments {
   std::vector<std::string> from;      ///< files of sums to go on from
   std::vector<std::string> note;      ///< this command, for whoever goes on: the folder and the words
   double checkpoint_s = 30.0;
+  std::uint64_t memory_bytes = 0;  ///< 0: any
   bool keep_sums = false;
   Share share;
 
@@ -65,6 +66,8 @@ double parse_percent(const std::string& text, const std::string& option);
 Vec3 parse_direction(const std::string& text, const std::string& option);
 /// "i/n", 1 to n.
 Share parse_share(const std::string& text, const std::string& option);
+/// "800M", "4G", "1.5G", in bytes (k, M, G = 10^3, 10^6, 10^9; the letter B may follow).
+std::uint64_t parse_bytes(const std::string& text, const std::string& option);
 /// One of length_units(), or a number of metres.
 double parse_length_unit(const std::string& text, const std::string& option);
 

@@ -31,6 +31,7 @@ void help(int argc, char** argv, cluster::Job& job) {
   Scene scene = load_scene(arguments.scene, arguments.scene_options);
   apply(arguments, scene);
   Device device(arguments.device, {job.on_node(), job.of_node()});
+  device.limit_memory(arguments.memory_bytes);
   trace(scene, device, {}, {}, job);
 }
 

@@ -107,6 +107,7 @@ class Run {
     if (!arguments_.reference.empty()) reference_ = load_reference(arguments_.reference);
     prepare_saving(asked);
     Device device(arguments_.device, job_ != nullptr ? NodePlace{job_->on_node(), job_->of_node()} : NodePlace{});
+    device.limit_memory(arguments_.memory_bytes);
     Result result = traced(device);
     warnings_.show(result.warnings);
     if (saving_.share.of > 1) return say_share(result);

@@ -62,6 +62,13 @@ std::uint64_t parse_count(const std::string& text, const std::string& option) {
   return static_cast<std::uint64_t>(value);
 }
 
+std::uint64_t parse_bytes(const std::string& text, const std::string& option) {
+  const bool letter = !text.empty() && text.back() == 'B';
+  const std::uint64_t bytes = parse_count(letter ? text.substr(0, text.size() - 1) : text, option);
+  if (bytes == 0) reject(option, text, "a size such as 800M or 4G, above zero");
+  return bytes;
+}
+
 double parse_duration(const std::string& text, const std::string& option) {
   const std::string expected = "a time such as 30, 30s, 500ms, 5m or 2h";
   double value = 0.0;

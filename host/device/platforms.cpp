@@ -299,6 +299,10 @@ const DeviceInfo& Device::info() const {
   return used != devices.end() ? used->info : devices.front().info;
 }
 
+void Device::limit_memory(std::uint64_t bytes) {
+  impl().memory_bytes = bytes;
+}
+
 Device::Impl& Device::impl() {
   if (!impl_) throw Error(ErrorCode::usage, "this Device was moved from");
   return *impl_;

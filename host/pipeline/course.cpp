@@ -11,12 +11,6 @@
 namespace clray {
 namespace {
 
-std::uint64_t power_of_two_above(std::uint64_t value) {
-  std::uint64_t p = 1;
-  while (p < value) p *= 2;
-  return p;
-}
-
 constexpr double kCareful = 1.1;  // a leap that falls short costs more than one that goes a little far
 
 }  // namespace

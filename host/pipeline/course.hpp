@@ -15,6 +15,13 @@ namespace clray {
 constexpr std::uint64_t kDefaultRays = 1u << 22;  ///< over all views together, with no stopping option
 constexpr std::uint64_t kFirstPoints = 1u << 10;  ///< of a view's first step, per replicate
 
+/// The least power of two that is not below `value`.
+inline std::uint64_t power_of_two_above(std::uint64_t value) {
+  std::uint64_t p = 1;
+  while (p < value) p *= 2;
+  return p;
+}
+
 /// What a course is given.
 struct CourseRules {
   std::uint64_t first_points = kFirstPoints;  ///< per replicate, of the first step

@@ -64,14 +64,20 @@ void DevicePass::fill(const char* name, const Numbers<T>& numbers, bool of_the_b
 void DevicePass::fill(const PassPlan& plan, const Geometry& geometry) {
   options_ = plan.program.options;
   constants_ = plan.constants;
+  layout_ = plan.layout;
   asked_ = all_views(plan);
-  check_sums_size(opened_, plan.layout.values);
+  room_first_ = room_end_ = 0;
   has_wide_ = options_.defines.at("CLRAY_WIDE") == "1";
-  const PassBuffers in(plan, geometry);
+  PassBuffers in(plan, geometry);
+  in.sums.count = in.wide.count = in.counts.count = 1;  // make_room() knows for which views
 #define CLRAY_FILL(type, name) fill(#name, in.name, of_the_body(#name, plan));
   CLRAY_BUFFERS(CLRAY_FILL)
 #undef CLRAY_FILL
   finish(opened_);  // what was queued reads `in`
+  bind();
+}
+
+void DevicePass::bind() {
   first_argument_ = 0;
   with_cl_errors(opened_.info.name, [&] {
 #define CLRAY_BIND(type, name) kernel_.setArg(first_argument_++, buffers_.at(#name).buffer);
@@ -80,15 +86,49 @@ void DevicePass::fill(const PassPlan& plan, const Geometry& geometry) {
   });
 }
 
+template <class T>
+void DevicePass::make_room(const char* name, std::uint64_t count) {
+  Kept& kept = buffers_.at(name);
+  if (kept.count >= count) return;  // drains leave zeros
+  check_sums_size(opened_, count * sizeof(T) / sizeof(std::int64_t));
+  kept = {};  // before there is another
+  kept = {make_zero_buffer<T>(opened_, count), count};
+}
+
+/// Lets the buffers of sums hold those of the views that are asked for, and tells the kernel where they stand: it
+/// counts rows from the first of all views.
+void DevicePass::make_room() {
+  if (has_room()) return;
+  room_first_ = asked_.front();
+  room_end_ = asked_.back() + 1;
+  shifts_.clear();
+  std::uint64_t values = 0, counts = 0;
+  std::vector<ClrayBlock> blocks;
+  for (const SumBlock& block : layout_.blocks) {
+    const SumRange range = range_of(layout_, block, room_first_, room_end_);
+    std::uint64_t& end = block.counts() ? counts : values;
+    shifts_.push_back(end - range.begin);
+    blocks.push_back({block.offset + shifts_.back(), block.width, 0});
+    end += range.end - range.begin;
+  }
+  make_room<std::int64_t>("sums", values);
+  if (has_wide_) make_room<std::int64_t>("wide", values);
+  make_room<std::uint32_t>("counts", counts);
+  write_buffer(opened_, buffers_.at("blocks").buffer, blocks);
+  bind();
+}
+
 void DevicePass::clear(const PassPlan& plan) {
-  for (const SumBlock& block : plan.layout.blocks) {
-    const SumRange range = range_of(plan.layout, block, asked_.front(), asked_.back() + 1);
+  if (!has_room()) return;  // nothing was launched
+  for (std::size_t b = 0; b < layout_.blocks.size(); ++b) {
+    const SumBlock& block = layout_.blocks[b];
+    const SumRange range = range_of(layout_, block, asked_.front(), asked_.back() + 1);
+    const std::uint64_t count = range.end - range.begin, first = range.begin + shifts_[b];
     if (block.counts()) {
-      zero_buffer<std::uint32_t>(opened_, buffers_.at("counts").buffer, range.end - range.begin, range.begin);
+      zero_buffer<std::uint32_t>(opened_, buffers_.at("counts").buffer, count, first);
     } else {
-      zero_buffer<std::int64_t>(opened_, buffers_.at("sums").buffer, range.end - range.begin, range.begin);
-      if (has_wide_)
-        zero_buffer<std::int64_t>(opened_, buffers_.at("wide").buffer, range.end - range.begin, range.begin);
+      zero_buffer<std::int64_t>(opened_, buffers_.at("sums").buffer, count, first);
+      if (has_wide_) zero_buffer<std::int64_t>(opened_, buffers_.at("wide").buffer, count, first);
     }
   }
   zero_buffer<std::int64_t>(opened_, buffers_.at("counters").buffer, CLRAY_COUNTERS * plan.layout.shape.views);
@@ -105,6 +145,7 @@ void DevicePass::set_work(std::uint32_t epoch, const std::vector<std::uint32_t>&
 }
 
 void DevicePass::launch_items(std::uint64_t first, std::uint32_t items, const PointBlock& block, std::uint32_t group) {
+  make_room();
   with_cl_errors(opened_.info.name, [&] {
     kernel_.setArg(first_argument_ + 0, static_cast<cl_ulong>(first));
     kernel_.setArg(first_argument_ + 1, static_cast<cl_uint>(items));
@@ -117,25 +158,30 @@ void DevicePass::launch_items(std::uint64_t first, std::uint32_t items, const Po
 }
 
 void DevicePass::drain(const PassPlan& plan, Sums* sums) {
-  for (const SumBlock& block : plan.layout.blocks) {
-    const SumRange range = range_of(plan.layout, block, asked_.front(), asked_.back() + 1);
+  if (!has_room()) return;  // nothing was launched
+  for (std::size_t b = 0; b < layout_.blocks.size(); ++b) {
+    const SumBlock& block = layout_.blocks[b];
+    const std::uint64_t shift = shifts_[b];
+    SumRange range = range_of(layout_, block, asked_.front(), asked_.back() + 1);
+    range = {range.begin + shift, range.end + shift};
     if (block.counts()) {
       const bool greatest = block.scale == SumScale::greatest;
-      each_piece<std::uint32_t>(opened_, buffers_.at("counts").buffer, range,
-                                [&](std::uint64_t first, const auto& more) {
-                                  for (std::size_t k = 0; k < more.size(); ++k) {
-                                    if (!greatest) {
-                                      sums->counts.add(first + k, more[k]);
-                                    } else if (more[k] > sums->counts[first + k]) {
-                                      sums->counts.set(first + k, more[k]);
-                                    }
-                                  }
-                                });
+      each_piece<std::uint32_t>(opened_, buffers_.at("counts").buffer, range, [&](std::uint64_t at, const auto& more) {
+        const std::uint64_t first = at - shift;
+        for (std::size_t k = 0; k < more.size(); ++k) {
+          if (!greatest) {
+            sums->counts.add(first + k, more[k]);
+          } else if (more[k] > sums->counts[first + k]) {
+            sums->counts.set(first + k, more[k]);
+          }
+        }
+      });
       continue;
     }
     const auto add = [&](const char* buffer, std::int64_t unit) {
-      each_piece<std::int64_t>(opened_, buffers_.at(buffer).buffer, range, [&](std::uint64_t first, const auto& more) {
-        for (std::size_t k = 0; k < more.size(); ++k) sums->values.add(first + k, static_cast<Sum>(more[k]) * unit);
+      each_piece<std::int64_t>(opened_, buffers_.at(buffer).buffer, range, [&](std::uint64_t at, const auto& more) {
+        for (std::size_t k = 0; k < more.size(); ++k)
+          sums->values.add(at - shift + k, static_cast<Sum>(more[k]) * unit);
       });
     };
     add("sums", 1);

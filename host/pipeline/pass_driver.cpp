@@ -24,12 +24,6 @@ constexpr double kDefaultTarget = 0.01;
 constexpr double kTilesPower = 1.5;  // of their number, with which the error of tiles falls (docs/exact.md)
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-std::uint64_t power_of_two_above(std::uint64_t value) {
-  std::uint64_t p = 1;
-  while (p < value) p *= 2;
-  return p;
-}
-
 /// Points of each half of a picture's pixel.
 std::uint64_t picture_points(const PassPlan& plan, const TraceOptions& options) {
   const PictureSize& size = plan.request.picture;
@@ -84,6 +78,7 @@ struct Step {
   CourseStep points;
   std::uint64_t from = 0;  ///< points that they have
   std::vector<std::uint32_t> views;
+  bool of_all = false;  ///< every view's course asks for it
 };
 
 class PassDriver {
@@ -97,6 +92,7 @@ class PassDriver {
         checkpoint_(saver.checkpoint()),
         saved_(saver.pass(plan)),
         courses_(plan.beams.views.size(), Course(rules_of(plan, options))),
+        slab_(plan.slab_views != 0 ? plan.slab_views : courses_.size()),
         time_left_s_(time_left_s) {
     if (saved_.found.points.empty()) saved_.found = Sums(plan.layout);
     saved_.epochs.resize(courses_.size());
@@ -122,20 +118,28 @@ class PassDriver {
     if (rules.target > 0.0 || rules.fixed_points == kMostPoints || time_left_s_ > 0.0)
       throw Error(ErrorCode::usage,
                   "a share needs a run whose end is known: --rays, and neither --target-error nor --time-limit");
-    OpenStep step = share_of(plan_, saver_.share(), rules.fixed_points);
-    saved_.first.assign(courses_.size(), 0);
-    for (const std::uint32_t v : step.views) saved_.found.points[v] = saved_.first[v] = step.from;
-    if (!saved_.step.is_same(step)) saved_.step = std::move(step);
-    if (!saved_.complete && !saved_.step.views.empty()) {
-      start(runner);
-      Step shown;
-      shown.points = {"share", 0, saved_.step.points, false};
-      shown.from = saved_.step.from;
-      shown.views = saved_.step.views;
-      const auto ask = [&](double part) { return keep_going(shown, part, now() - start_); };
-      out_.partial = !runner_->run(&saved_.found, &saved_.step, ask, checkpoint_);
+    const OpenStep share = share_of(plan_, saver_.share(), rules.fixed_points);
+    if (saved_.first.empty()) {
+      saved_.first.assign(courses_.size(), 0);
+      for (const std::uint32_t v : share.views) saved_.found.points[v] = saved_.first[v] = share.from;
     }
-    if (!out_.partial) saved_.step = OpenStep();
+    Step left;
+    left.points = {"share", 0, share.points, false};
+    left.from = share.from;
+    for (const std::uint32_t v : share.views) {
+      if (saved_.found.points[v] != share.points) left.views.push_back(v);
+    }
+    std::vector<Step> slabs;
+    add_slabs(left, &slabs);
+    for (const Step& slab : slabs) {
+      if (out_.partial) break;
+      OpenStep step{0, slab.from, slab.points.points, slab.views, 0, {}};
+      if (!saved_.step.is_same(step)) saved_.step = std::move(step);
+      start(runner);
+      const auto ask = [&](double part) { return keep_going(slab, part, now() - start_); };
+      out_.partial = !runner_->run(&saved_.found, &saved_.step, ask, checkpoint_);
+      if (!out_.partial) saved_.step = OpenStep();
+    }
     saved_.complete = !out_.partial;
     if (out_.partial) saver_.save();
     out_.seconds = now() - start_;
@@ -206,8 +210,22 @@ class PassDriver {
       step.views.push_back(v);
     }
     std::vector<Step> list;
-    for (auto& [key, step] : steps) list.push_back(std::move(step));
+    for (auto& [key, step] : steps) {
+      step.of_all = step.views.size() == courses_.size();
+      add_slabs(step, &list);
+    }
     return list;
+  }
+
+  /// Appends a step in parts, so that devices need not have room for all of its views at once.
+  void add_slabs(const Step& step, std::vector<Step>* list) const {
+    for (std::size_t first = 0; first < step.views.size(); first += slab_) {
+      Step part = step;
+      const auto begin = step.views.begin() + static_cast<std::ptrdiff_t>(first);
+      part.views.assign(begin, begin + static_cast<std::ptrdiff_t>(std::min(slab_, step.views.size() - first)));
+      part.of_all = step.of_all && first == 0;
+      list->push_back(std::move(part));
+    }
   }
 
   /// Traces a step; false where time or an interrupt ended the pass.
@@ -215,7 +233,7 @@ class PassDriver {
     const bool confirms = step.points.confirms;
     Sums& sums = confirms ? saved_.confirmed : saved_.found;
     double& seconds = confirms ? saved_.confirm_s : saved_.search_s;
-    if (confirms && step.from == 0 && step.views.size() == courses_.size()) seconds = 0.0;
+    if (confirms && step.from == 0 && step.of_all) seconds = 0.0;
     OpenStep open{step.points.epoch, step.from, step.points.points, step.views, 0, {}};
     if (!saved_.step.is_same(open)) saved_.step = std::move(open);
     const double begin = now();
@@ -263,7 +281,17 @@ class PassDriver {
     worst.phase = step.points.phase;
     worst.rays = static_cast<std::uint64_t>(static_cast<double>(step.points.points) * rays_per_point());
     worst.seconds = seconds;
-    saved_.errors.push_back(worst);
+    add_error(worst);
+  }
+
+  /// The parts of a step have one error, the largest.
+  void add_error(const ErrorPoint& point) {
+    ErrorPoint* const last = saved_.errors.empty() ? nullptr : &saved_.errors.back();
+    if (slab_ == courses_.size() || last == nullptr || last->phase != point.phase || last->rays != point.rays)
+      return saved_.errors.push_back(point);
+    last->seconds = point.seconds;
+    if (!(last->relative_standard_error >= point.relative_standard_error))
+      last->relative_standard_error = point.relative_standard_error;
   }
 
   bool keep_going(const Step& step, double share, double seconds) {
@@ -352,6 +380,7 @@ class PassDriver {
   const Checkpoint checkpoint_;
   SavedPass& saved_;
   std::vector<Course> courses_;  // of each view
+  const std::size_t slab_;       // views of a step's part
   PointRunner* runner_ = nullptr;
   double start_ = 0.0, time_left_s_;
   const char* stopped_by_ = "";

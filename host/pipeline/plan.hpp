@@ -90,6 +90,7 @@ struct PassPlan {
   UnsolvedPrimitives unsolved;  ///< where curved shapes stand among faces that are solved; else empty
   ClrayPass constants{};
   Specialised program;
+  std::size_t slab_views = 0;          ///< whose sums a device holds at once; 0: all
   std::shared_ptr<FirstBounce> first;  ///< of a pass whose first bounce is solved; else none
 };
 

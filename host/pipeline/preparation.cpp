@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "pipeline/memory_plan.hpp"
+
 namespace clray {
 namespace {
 
@@ -55,6 +57,7 @@ Planned plan_scene(Preparation& kept, const Scene& scene) {
   if (rays && !geometry->trees) geometry = &kept.body(scene, true);
   std::vector<PassPlan> plans = plan_passes(scene, *geometry, std::move(requests));
   fit_to(kept.device(), kept.used_again(), &plans);
+  fit_memory(kept.device(), scene, *geometry, &plans);
   return {*geometry, std::move(plans)};
 }
 

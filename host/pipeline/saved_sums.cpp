@@ -206,17 +206,23 @@ std::uint64_t fingerprint_of(const PassPlan& plan, const Geometry& geometry) {
 }
 
 std::string to_bytes(const SavedSums& sums) {
+  constexpr std::size_t kHead = 24;
   BytesWriter rest;
+  rest.raw(kSavedMagic);
+  rest.raw(std::string(kHead, '\0'));  // which is known at the end
   rest.numbers(std::vector<std::uint32_t>{sums.share.number, sums.share.of});
   rest.number(sums.note.size());
   for (const std::string& word : sums.note) rest.text(word);
   rest.number(sums.passes.size());
   for (const SavedPass& pass : sums.passes) put(rest, pass);
+  std::string bytes = rest.take();
+  const std::size_t begin = kSavedMagic.size() + kHead;
   BytesWriter head;
   head.number(kVersion);
-  head.number(rest.bytes().size());
-  head.number(checksum(rest.bytes().data(), rest.bytes().size()));
-  return std::string(kSavedMagic) + head.bytes() + rest.bytes();
+  head.number(bytes.size() - begin);
+  head.number(checksum(bytes.data() + begin, bytes.size() - begin));
+  bytes.replace(kSavedMagic.size(), kHead, head.bytes());
+  return bytes;
 }
 
 SavedSums from_bytes(std::string_view bytes, const std::string& name) {

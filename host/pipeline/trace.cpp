@@ -109,7 +109,9 @@ class Tracer {
       const double left = scene_.trace.time_limit_s > 0.0 ? std::max(1e-6, scene_.trace.time_limit_s - spent_) : 0.0;
       // After an interrupt no other program is built.
       const bool go = k == 0 || !stopped();
-      take(planned.plans[k], geometry, go ? outcome_of(planned.plans[k], geometry, kept_.pass(k), left) : cut());
+      const PassOutcome outcome = go ? outcome_of(planned.plans[k], geometry, kept_.pass(k), left) : cut();
+      if (!kept_.used_again()) kept_.pass(k)->clear();  // results need memory, too
+      take(planned.plans[k], geometry, outcome);
     }
   }
 

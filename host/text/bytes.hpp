@@ -27,6 +27,8 @@ class BytesWriter {
       for (int b = 0; b < kBytes; ++b) at[b] = static_cast<char>(number >> (8 * b) & 0xff);
     }
   }
+  /// Bytes without their count.
+  void raw(std::string_view bytes) { out_.append(bytes); }
   void real(double value);
   void text(std::string_view value);
   template <class T>

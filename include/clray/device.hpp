@@ -2,6 +2,7 @@
 // Which OpenCL devices there are, and choosing one or several to trace on.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -63,6 +64,11 @@ class Device {
 
   /// What was opened, the first of several. Throws Error(usage) for a Device that was moved from.
   const DeviceInfo& info() const;
+
+  /// Bounds the memory that a run takes, of the device and of the host: each `bytes` or, where the device is a CPU,
+  /// both together. It is checked before anything is traced: then trace() throws Error(usage) and says what would help.
+  /// 0: as much as there is.
+  void limit_memory(std::uint64_t bytes);
 
   struct Impl;
   Impl& impl();  ///< for the library itself
