@@ -42,7 +42,7 @@ void ProgressBar::show(const Progress& progress) {
   last_ = now;
   const double fraction = std::clamp(std::isfinite(progress.fraction) ? progress.fraction : 0.0, 0.0, 1.0);
   constexpr int kWidth = 24;
-  const int full = static_cast<int>(fraction * kWidth + 0.5);
+  const int full = static_cast<int>(std::lround(fraction * kWidth));
   std::string bar;
   for (int i = 0; i < kWidth; ++i) bar += i < full ? "█" : "·";
   const std::string error =

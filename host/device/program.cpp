@@ -140,8 +140,8 @@ cl::Program build_program(OpenedDevice& opened, const std::string& entry, const 
   const std::string name = program_name(entry, options);
   const auto built = opened.by_name.find(name);
   if (built != opened.by_name.end()) return built->second;
-  const cl::Program program = build_source(opened, entry, program_source(opened, entry, options),
-                                           options.warnings_are_errors, options.optimised);
+  cl::Program program = build_source(opened, entry, program_source(opened, entry, options), options.warnings_are_errors,
+                                     options.optimised);
   opened.by_name.emplace(name, program);
   return program;
 }

@@ -134,8 +134,8 @@ std::string body_text(const Scene& scene) {
   const std::string more_materials = add_first(scene.materials, [&](const Material& m) {
     materials.add({m.name, m.model, material_text(m)});
   });
-  const std::string text = section_text("components", scene.components.size(), components, more_components) +
-                           section_text("materials", scene.materials.size(), materials, more_materials);
+  std::string text = section_text("components", scene.components.size(), components, more_components) +
+                     section_text("materials", scene.materials.size(), materials, more_materials);
   if (scene.variants.empty()) return text;
   Columns variants;
   const std::string more_variants = add_first(scene.variants, [&](const Variant& v) {

@@ -5,6 +5,7 @@
 #include <poll.h>
 
 #include <algorithm>
+#include <chrono>
 #include <nlohmann/json.hpp>
 #include <random>
 
@@ -76,6 +77,23 @@ TEST_CASE("a signal to the process group at any moment: 128 + signal, a whole pa
     for (const auto& file : result["files"]) CHECK(scratch.has("out/" + file.get<std::string>()));
   }
   MESSAGE(saved << " of " << moments << " had something to save");
+}
+
+TEST_CASE("tiles of one view end within moments of a signal") {
+  if (::getenv("CLRAY_LONG_TESTS") == nullptr) return;  // half a minute of both cores
+  const Scratch scratch;
+  spit(scratch / "square.obj", square() + "v 0.2 0.2 0.3\nv 0.9 0.3 0.4\nv 0.4 0.8 0.2\nf -3 -2 -1\n");
+  const Running running(scratch, {"--device", "cpu", "--method", "tiles", "--target-error", "1e-9", "--no-plots",
+                                  "square.obj", "--out", "out"});
+  wait_for_progress(running);
+  wait_ms(15000);  // steps take many seconds by now
+  const auto start = std::chrono::steady_clock::now();
+  running.send(SIGTERM);
+  const auto outcome = running.wait();
+  CAPTURE(outcome.err);
+  CHECK(outcome.status == 128 + SIGTERM);
+  // A slice takes 0.15 s. The rest is for a busy machine, and for the memory of a million tiles to be given back.
+  CHECK(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() < 5.0);
 }
 
 TEST_CASE("a second signal ends at once, and leaves nothing behind") {
