@@ -95,7 +95,10 @@ std::string key_help(const std::string& of, const std::string& name, const std::
 template <class Text>
 void text_option(CLI::App& app, const std::string& name, Text& value, const std::string& value_name,
                  const std::string& help, const std::string& group) {
-  const auto keep = [&value](const std::string& text) { value = text; };
+  const auto keep = [&value, name](const std::string& text) {
+    if (text.empty()) throw Error(ErrorCode::usage, "'': expected a value, or the option left out", name);
+    value = text;
+  };
   app.add_option_function<std::string>(name, keep, wrapped(help))->type_name(value_name)->group(group)->expected(1);
 }
 
@@ -197,23 +200,24 @@ std::uint64_t count_up_to(std::uint64_t most, const std::string& text, const std
 
 /// A number or a word, as given in `text`, that a key takes.
 template <class Value>
-Value for_key(const std::string& name, const Value& value, const std::string& text, const std::string& option) {
+Value for_key(const std::string& name, const Value& value, const std::string& text, const std::string& option,
+              const std::string& of = "trace") {
   std::string fault;
   if constexpr (std::is_arithmetic_v<Value>) {
-    fault = key_fault("trace", name, static_cast<double>(value));
+    fault = key_fault(of, name, static_cast<double>(value));
   } else {
-    fault = key_fault("trace", name, value);
+    fault = key_fault(of, name, value);
   }
   if (!fault.empty()) throw Error(ErrorCode::usage, "'" + text + "': " + fault, option);
   return value;
 }
 
-std::uint64_t count_for_key(const std::string& name, const std::string& text, const std::string& option) {
-  return for_key(name, parse_count(text, option), text, option);
+std::uint64_t count_for_key(const std::string& name, const std::string& text, const std::string& option,
+                            const std::string& of = "trace") {
+  return for_key(name, parse_count(text, option), text, option, of);
 }
 
 void parse_values(Arguments& a, const Texts& t) {
-  constexpr std::uint64_t kLargestInt = std::numeric_limits<int>::max();
   if (t.rays) a.rays = count_for_key("rays", *t.rays, "--rays");
   if (t.target) {
     const double percent = parse_percent(*t.target, "--target-error");
@@ -221,12 +225,14 @@ void parse_values(Arguments& a, const Texts& t) {
   }
   if (t.time)
     a.time_limit_s = for_key("time_limit_s", parse_duration(*t.time, "--time-limit"), *t.time, "--time-limit");
-  if (t.bins) a.scene_options.bins = static_cast<int>(count_up_to(kLargestInt, *t.bins, "--bins"));
+  if (t.bins) a.scene_options.bins = static_cast<int>(count_for_key("bins", *t.bins, "--bins", "delay"));
   if (t.bounces) a.max_bounces = static_cast<int>(count_for_key("max_bounces", *t.bounces, "--max-bounces"));
   if (t.group) a.work_group = static_cast<int>(count_up_to(1024, *t.group, "--work-group"));
   if (t.slice) a.slice_points = count_up_to(std::numeric_limits<std::uint64_t>::max(), *t.slice, "--slice-points");
   if (t.memory) a.memory_bytes = parse_bytes(*t.memory, "--memory");
   if (t.checkpoint) a.checkpoint_s = parse_duration(*t.checkpoint, "--checkpoint");
+  if (!(a.checkpoint_s >= 0.0))
+    throw Error(ErrorCode::usage, "'" + *t.checkpoint + "': expected a time of 0 or more", "--checkpoint");
   if (t.share) a.share = parse_share(*t.share, "--shard");
   if (t.seed) a.seed = count_for_key("seed", *t.seed, "--seed");
   if (t.unit) a.scene_options.length_unit_m = parse_length_unit(*t.unit, "--length-unit");
@@ -271,6 +277,13 @@ void parse_values(Arguments& a, const Texts& t) {
   throw Error(ErrorCode::usage, std::string(error.what()) + " (clray --help explains the options)");
 }
 
+/// A command that stands where the scene should be.
+void check_command_first(const Arguments& a) {
+  if (!a.verb.empty() || (a.scene != "merge" && a.scene != "verify")) return;
+  throw Error(ErrorCode::usage, "the command comes first: clray " + a.scene +
+                                    (a.scene == "merge" ? " DIR DIR ..." : " DIR") + " [options]");
+}
+
 void check_whole(const Arguments& a) {
   if (!a.list.empty()) {
     const std::vector<std::string>& tables = table_names();
@@ -280,7 +293,8 @@ void check_whole(const Arguments& a) {
                 "--list");
   }
   if (!a.verb.empty() && a.operands.empty())
-    throw Error(ErrorCode::usage, "nothing given to " + a.verb + ": name the folders of results");
+    throw Error(ErrorCode::usage, "nothing given to " + a.verb + ": name the " +
+                                      (a.verb == "merge" ? "folders of results" : "folder of a result"));
   if (a.verb == "verify" && a.operands.size() > 1) throw Error(ErrorCode::usage, "one result at a time", "verify");
   if (a.verb == "merge" && a.out.empty()) throw Error(ErrorCode::usage, "expected --out DIR for the result", "merge");
   if (a.scene.empty() && a.resume.empty() && a.verb.empty()) {
@@ -309,6 +323,7 @@ void parse_words(std::vector<std::string> words, Arguments* arguments) {
     arguments->finished = true;
     return;
   } catch (const CLI::ParseError& error) {
+    check_command_first(*arguments);
     complain(app, error);
   }
   parse_values(*arguments, texts);
@@ -324,6 +339,7 @@ Arguments parse_arguments(int argc, char** argv) {
   }
   parse_words(words, &arguments);
   if (arguments.finished) return arguments;
+  check_command_first(arguments);
   check_whole(arguments);
   if (!arguments.resume.empty() || !arguments.verb.empty()) {
     go_on(words, &arguments);

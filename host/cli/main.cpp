@@ -104,7 +104,7 @@ class Run {
     const std::string asked = output_folder(arguments_, scene_);
     check_output(asked);
     if (const std::string fault = size_fault(scene_, asked); !fault.empty()) throw Error(ErrorCode::output, fault);
-    if (!arguments_.reference.empty()) reference_ = load_reference(arguments_.reference);
+    if (!arguments_.reference.empty()) reference_ = fitting_reference();
     prepare_saving(asked);
     Device device(arguments_.device, job_ != nullptr ? NodePlace{job_->on_node(), job_->of_node()} : NodePlace{});
     device.limit_memory(arguments_.memory_bytes);
@@ -113,7 +113,10 @@ class Run {
     if (saving_.share.of > 1) return say_share(result);
     if (result.partial && !finished_something_) {
       if (signals_.taken() != 0) return nothing_saved();
-      throw Error(ErrorCode::usage, "too short: not even the first doubling was finished; nothing is saved",
+      throw Error(ErrorCode::usage,
+                  "too short: not even the first doubling was finished, so there is no result" +
+                      (is_saved(saving_.file) ? "; its sums are in " + saving_.file + ": clray --resume goes on"
+                                              : std::string()),
                   "--time-limit");
     }
     result.seconds.load = load_s;
@@ -129,6 +132,12 @@ class Run {
   }
 
  private:
+  Reference fitting_reference() const {
+    const Reference reference = load_reference(arguments_.reference);
+    check_reference(reference, scene_);
+    return reference;
+  }
+
   /// Where sums are saved, and what stands there.
   void prepare_saving(const std::string& folder) {
     saving_.keep = arguments_.keep_sums || arguments_.share.of > 1;

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // --reference: totals of a saved summary.json, or of a delay.csv (ours or a closed form's table), against which the
 // true error of a result is measured.
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "clray/error.hpp"
 #include "clray/write.hpp"
@@ -17,7 +20,8 @@ namespace clray {
 namespace {
 
 using io::Total;
-constexpr const char* kFirst = "";  ///< path of a reference that belongs to the first total, whatever its name
+constexpr std::size_t kMostNamed = 6;  ///< in a message
+constexpr const char* kFirst = "";     ///< path of a reference that belongs to the first delay, whatever its name
 
 [[noreturn]] void fail(const std::string& file, std::size_t line, const std::string& message) {
   throw Error(ErrorCode::input, message, line ? file + ":" + std::to_string(line) : file);
@@ -149,10 +153,53 @@ Reference from_table(const std::string& file, const std::string& text) {
   return {file, {{kFirst, std::isnan(stated) ? sum : stated}}};
 }
 
-double wanted_total(const Total& total, bool first, const Reference& reference) {
+/// Whether it is what a delay.csv has the total of: the first delay.
+bool is_first_delay(const Result& result, const Total& total) {
+  if (result.delay.empty() || !total.sum.empty()) return false;
+  Total first = total;
+  first.key = result.delay.front().key;
+  return io::total_path(first) == io::total_path(total);
+}
+
+double wanted_total(const Result& result, const Total& total, const Reference& reference) {
   auto found = reference.totals.find(io::total_path(total));
-  if (found == reference.totals.end() && first) found = reference.totals.find(kFirst);
+  if (found == reference.totals.end() && is_first_delay(result, total)) found = reference.totals.find(kFirst);
   return found == reference.totals.end() ? std::nan("") : found->second;
+}
+
+/// The names of a total's path before its band: detector, observer and variant. Names have no slashes.
+std::array<std::string, 3> names_of(const std::string& path) {
+  std::array<std::string, 3> names;
+  std::size_t begin = 0;
+  for (std::string& name : names) {
+    const std::size_t end = path.find('/', begin);
+    name = path.substr(begin, end - begin);
+    begin = end == std::string::npos ? path.size() : end + 1;
+  }
+  return names;
+}
+
+template <class List>
+bool has_name(const List& list, const std::string& name) {
+  return std::any_of(list.begin(), list.end(), [&](const auto& one) { return one.name == name; });
+}
+
+/// Whether results of the scene may have these names. Some detectors have no observer.
+bool may_have(const Scene& scene, const std::array<std::string, 3>& names) {
+  const auto& [detector, observer, variant] = names;
+  const bool measured = std::any_of(scene.detectors.begin(), scene.detectors.end(), [&](const DetectorSpec& d) {
+    return (d.name.empty() ? d.kind : d.name) == detector;
+  });
+  return measured && (observer.empty() || has_name(scene.observers, observer)) &&
+         (variant.empty() ? scene.variants.empty() : has_name(scene.variants, variant));
+}
+
+std::string shown_names(const std::array<std::string, 3>& names) {
+  std::string shown = names[0];
+  for (const std::string* name : {&names[1], &names[2]}) {
+    if (!name->empty()) shown += " / " + *name;
+  }
+  return shown;
 }
 
 }  // namespace
@@ -164,12 +211,26 @@ Reference load_reference(const std::string& file) {
   return text[first] == '{' ? from_summary(file, text) : from_table(file, text);
 }
 
+void check_reference(const Reference& reference, const Scene& scene) {
+  std::set<std::string> known;
+  for (const auto& [path, value] : reference.totals) {
+    const bool fits = path == kFirst ? std::any_of(scene.detectors.begin(), scene.detectors.end(),
+                                                   [](const DetectorSpec& d) { return d.kind == "delay"; })
+                                     : may_have(scene, names_of(path));
+    if (fits) return;
+    known.insert(path == kFirst ? "delay" : shown_names(names_of(path)));
+  }
+  std::string list;
+  for (const std::string& name : known) list += (list.empty() ? "" : ", ") + name;
+  if (known.size() > kMostNamed) list = text::counted(known.size(), "record");
+  fail(reference.file, 0,
+       "holds totals of " + list + ", and none of this scene's; expected one detector, observer and variant in common");
+}
+
 double relative_true_error(const Result& result, const Reference& reference) {
   double largest = std::nan("");
-  bool first = true;
   for (const auto& total : io::totals(result)) {
-    const double wanted = wanted_total(total, first, reference);
-    first = false;
+    const double wanted = wanted_total(result, total, reference);
     // A zero that was expected to be zero has no error.
     const double error = total.value == wanted ? 0.0 : std::fabs(total.value - wanted) / std::fabs(wanted);
     if (!std::isnan(error) && !(error <= largest)) largest = error;
@@ -189,7 +250,7 @@ std::string total_path(const Total& total) {
 
 double first_reference_total(const Result& result, const Reference& reference) {
   const auto all = totals(result);
-  return all.empty() ? std::nan("") : wanted_total(all.front(), true, reference);
+  return all.empty() ? std::nan("") : wanted_total(result, all.front(), reference);
 }
 
 }  // namespace io

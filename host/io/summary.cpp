@@ -177,7 +177,10 @@ void write_summary(Writer& writer, const std::vector<MoreFiles>& more) {
   summary["energy"] = energy_of(r.energy);
   if (writer.reference) {
     summary["reference"] = writer.reference->file;
-    summary["relative_true_error"] = relative_true_error(r, *writer.reference);
+    const double error = relative_true_error(r, *writer.reference);
+    summary["relative_true_error"] = error;
+    if (std::isnan(error))
+      writer.warnings.push_back("there is no true error: " + writer.reference->file + " has none of these totals");
   }
   SummaryEntries entries(writer);
   for (const RecordRoom* room : record_rooms()) room->summary(entries);

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "clray/detector.hpp"
 #include "clray/error.hpp"
 #include "exact/beam_faces.hpp"
 #include "exact/unsolved.hpp"
@@ -181,7 +182,10 @@ MethodChoice choose_method(const Scene& scene, const Geometry& geometry, const D
                            : MethodChoice{PassMethod::first_exact, because + "; rays find " + sampled};
   };
   if (t.method == Method::exact) {
-    if (!why.empty()) throw Error(ErrorCode::input, "method = \"exact\" is not possible: " + why, "trace.method");
+    if (!why.empty())
+      throw Error(ErrorCode::input,
+                  "method = \"exact\" is not possible for the detector " + shown_name(detector) + ": " + why,
+                  "trace.method");
     if (t.rays != 0 && sampled.empty())
       throw Error(ErrorCode::input, "method = \"exact\" traces no rays here: leave rays out", "trace.rays");
     return solved("asked for");
@@ -190,7 +194,9 @@ MethodChoice choose_method(const Scene& scene, const Geometry& geometry, const D
   const bool connects = table_row("detector", detector.kind).connects;
   if (t.method == Method::tiles && connects) {
     if (!no_tiles.empty())
-      throw Error(ErrorCode::input, "method = \"tiles\" is not possible: " + no_tiles, "trace.method");
+      throw Error(ErrorCode::input,
+                  "method = \"tiles\" is not possible for the detector " + shown_name(detector) + ": " + no_tiles,
+                  "trace.method");
     return {PassMethod::tiles, "asked for"};
   }
   if (t.rays != 0) return points(fmt::format("rays = {} are asked for", t.rays));

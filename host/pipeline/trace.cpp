@@ -3,12 +3,14 @@
 #include "clray/trace.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <utility>
 
+#include "clray/detector.hpp"
 #include "clray/error.hpp"
 #include "clray/pass.hpp"
 #include "clray/prepared.hpp"
@@ -186,12 +188,11 @@ class Tracer {
       result_.partial = result_.partial || outcome.partial;
       return;
     }
+    result_.partial = result_.partial || outcome.partial || outcome.sums.empty();
     if (outcome.sums.empty()) {
-      result_.partial = true;
-      result_.warnings.push_back("stopped before the first result");
+      result_.warnings.push_back("stopped before the first result of " + records_of(plan));
       return;
     }
-    result_.partial = result_.partial || outcome.partial;
     result_.target_asked = result_.target_asked || outcome.target_asked;
     if (outcome.target_asked) {
       // The result's ending is that of the first pass that missed the target, else of the one with the largest error.
@@ -216,11 +217,33 @@ class Tracer {
     add_unique(doubtful_claims(plan, geometry, outcome.sums), &result_.warnings);
   }
 
+  /// The detectors of a pass, and the variants and bands, where there are several, that it is about.
+  std::string records_of(const PassPlan& plan) const {
+    std::string text;
+    const auto add = [&](const std::string& what, const std::vector<std::string>& names) {
+      if (!names.empty()) text += (text.empty() ? what : ", " + what) + fmt::format("{}", fmt::join(names, ", "));
+    };
+    std::vector<std::string> detectors, variants, bands;
+    for (const PassDetector& d : plan.detectors) {
+      if (d.index >= 0) add_unique({shown_name(scene_.detectors[static_cast<std::size_t>(d.index)])}, &detectors);
+    }
+    for (const Lane& lane : plan.request.lanes) {
+      if (!lane.variant.empty()) add_unique({lane.variant}, &variants);
+      if (!lane.band_name.empty()) add_unique({lane.band_name}, &bands);
+    }
+    add("", detectors);
+    add("variant ", variants);
+    add("band ", bands);
+    return text;
+  }
+
   void end(const Geometry& geometry, double start) {
     result_.target_reached = result_.target_asked && target_reached_ && !result_.partial;
     if (result_.target_asked) result_.target_percent = scene_.trace.target_error_percent;
     result_.reached_percent = 100.0 * ending_.half_width;
-    result_.stopped_by = result_.partial && stopped() ? "interrupt" : ending_.by;
+    // Whatever ended the passes that are whole, others are missing.
+    if (result_.partial) ending_.by = stopped() ? "interrupt" : "time limit";
+    result_.stopped_by = ending_.by;
     result_.seconds.trace = spent_;
     result_.seconds.total = now() - start;
     result_.device = device_.info();  // now it is known which have failed

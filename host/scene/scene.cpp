@@ -168,7 +168,7 @@ void warn_of_lost_colour(Scene* scene) {
 
 namespace {
 
-/// What load_scene() and parse_scene() do when the scene is read.
+/// What load_scene() does when a scene or a bare mesh is read.
 Scene finished(Scene scene, bool mesh, const SceneOptions& options) {
   apply_options(options, &scene);
   if (mesh) light_for_pictures(options, &scene);
@@ -177,6 +177,25 @@ Scene finished(Scene scene, bool mesh, const SceneOptions& options) {
   const std::vector<std::string> more = ranging_warnings(scene);
   scene.warnings.insert(scene.warnings.end(), more.begin(), more.end());
   return scene;
+}
+
+Scene read_and_finished(const std::string& text, const std::string& path, const SceneOptions& options) {
+  try {
+    return finished(read_scene_text(text, path, options), false, options);
+  } catch (const Error& error) {
+    throw placed_in_file(error, text, path);
+  }
+}
+
+/// Of a bare mesh its only component can be at fault.
+Scene mesh_and_finished(const std::string& path, const SceneOptions& options) {
+  Scene scene = bare_mesh(path, options);
+  try {
+    return finished(std::move(scene), true, options);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::input || error.context().rfind("components[0]", 0) != 0) throw;
+    throw Error(error.code(), error.message(), path);
+  }
 }
 
 void check_unit_of(const SceneOptions& options) {
@@ -189,7 +208,7 @@ void check_unit_of(const SceneOptions& options) {
 
 Scene parse_scene(const std::string& text, const std::string& path, const SceneOptions& options) {
   check_unit_of(options);
-  return finished(read_scene_text(text, path, options), false, options);
+  return read_and_finished(text, path, options);
 }
 
 Scene load_scene(const std::string& path, const SceneOptions& options) {
@@ -205,8 +224,7 @@ Scene load_scene(const std::string& path, const SceneOptions& options) {
   }
   if (const std::string fault = text::input_file_fault(path); !fault.empty())
     throw Error(ErrorCode::input, fault, path);
-  Scene scene = mesh ? bare_mesh(path, options) : read_scene_text(text::read_input_file(path), path, options);
-  return finished(std::move(scene), mesh, options);
+  return mesh ? mesh_and_finished(path, options) : read_and_finished(text::read_input_file(path), path, options);
 }
 
 }  // namespace clray

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "clray/error.hpp"
 #include "clray/scene.hpp"
 #include "scene/file/toml_reader.hpp"
 
@@ -12,6 +13,10 @@ namespace clray {
 
 /// Reads a scene file into a scene, all of it but what the command line adds.
 Scene read_scene_text(const std::string& text, const std::string& path, const SceneOptions& options);
+
+/// An error that names a member of the scene ("observers[0].direction") as one that names its place in the scene file
+/// with this text, or the file alone where the file does not speak of it. Other errors stay as they are.
+Error placed_in_file(const Error& error, const std::string& text, const std::string& path);
 
 void read_source(TomlTable& root, Scene* scene);
 void read_observers(TomlTable& root, Scene* scene);

@@ -237,7 +237,8 @@ std::string session_json(const Findings& f) {
 /// A row for each session, then the link budget of the first.
 std::string sessions_text(const std::vector<std::pair<std::string, Findings>>& sessions) {
   text::Columns columns;
-  columns.add({"session", "shots", "signal", "noise", "none", "mean cross-section", "received per pulse"});
+  columns.add(
+      {"session", "shots", "signal", "noise", "none", "mean cross-section", "received per pulse at the start's range"});
   for (const auto& [name, f] : sessions) {
     columns.add({name, fmt::format("{}", f.counts.shots), fmt::format("{}", f.counts.signal),
                  fmt::format("{}", f.counts.noise), fmt::format("{}", f.counts.none),

@@ -61,6 +61,10 @@ struct Reference {
 /// Reads a summary.json or a delay.csv. Throws Error(input).
 Reference load_reference(const std::string& file);
 
+/// Refuses a reference that can have none of the totals of a scene: no detector, observer and variant of these names
+/// or, for a delay.csv, no detector of the kind delay. Throws Error(input).
+void check_reference(const Reference& reference, const Scene& scene);
+
 /// The largest |total − reference| / |reference| over the totals that both have; NaN where they share none.
 double relative_true_error(const Result& result, const Reference& reference);
 

@@ -119,6 +119,27 @@ TEST_CASE("wrong arguments: status 2, the option, the word and what was expected
   CHECK(contains(nothing.err, "no scene given"));
 }
 
+TEST_CASE("options without a value, below zero or in the command's place are refused") {
+  const Scratch scratch;
+  const auto said = [&](const std::vector<std::string>& arguments, const std::string& words) {
+    CAPTURE(words);
+    const Outcome outcome = on_square(scratch, arguments);
+    CAPTURE(outcome.err);
+    CHECK(outcome.status == 2);
+    CHECK(contains(outcome.err, words));
+  };
+  for (const char* option : {"--material", "--out", "--reference", "--device"})
+    said({option, ""}, std::string(option) + ": '': expected a value");
+  said({"--checkpoint", "-1"}, "--checkpoint: '-1': expected a time of 0 or more");
+  said({"--bins", "0"}, "--bins: '0': expected a whole number in [1..1e7]");
+  said({"--bins", "10000001"}, "--bins: '10000001': expected a whole number in [1..1e7]");
+  for (const char* command : {"verify", "merge"})
+    said({"--device", "cpu", command}, std::string("the command comes first: clray ") + command + " DIR");
+  const Outcome alone = clray(scratch, {"verify"});
+  CHECK(alone.status == 2);
+  CHECK(contains(alone.err, "nothing given to verify: name the folder of a result"));
+}
+
 TEST_CASE("check: says what was understood, traces nothing, needs no device") {
   const Scratch scratch;
   const auto outcome = on_square(

@@ -83,6 +83,31 @@ TEST_CASE("a target out of reach: the time limit ends it") {
   CHECK(ran.summary["partial"] == true);
 }
 
+TEST_CASE("what a time limit leaves out is named, and is what stopped the run") {
+  const Scratch scratch;
+  // The delays are solved at once; pictures of so many pixels take longer than any such limit.
+  const std::string scene =
+      "[[component]]\nshape = \"box\"\n[[detector]]\nkind = \"delay\"\n"
+      "[[detector]]\nkind = \"rgb\"\nname = \"large\"\nwidth = 4096\nheight = 4096\nsamples = 1024\n";
+  const Ran ran = run(scratch, scene, {"--time-limit", "300ms"});
+  CHECK(ran.summary["partial"] == true);
+  CHECK(ran.summary["stopped_by"] == "time limit");
+  CHECK(contains(ran.outcome.err, "stopped before the first result of large"));
+  CHECK(ran.summary["detectors"].contains("delay"));
+  CHECK_FALSE(ran.summary["detectors"].contains("large"));
+}
+
+TEST_CASE("a time limit before the first result says where the sums are, if anywhere") {
+  const Scratch scratch;
+  spit(scratch / "scene.toml", sphere(kLambert));
+  const Outcome outcome =
+      clray(scratch, {"--device", "cpu", "scene.toml", "--no-plots", "--out", "out", "--time-limit", "0.001ms"});
+  CAPTURE(outcome.err);
+  CHECK(outcome.status == 2);
+  CHECK_FALSE(contains(outcome.err, "nothing is saved"));
+  CHECK(contains(outcome.err, "its sums are in out.sums: clray --resume goes on") == scratch.has("out.sums"));
+}
+
 TEST_CASE("a target out of reach: the cap on rays ends it, however low") {
   for (const int cap : {65536, 100000, 1000}) {
     const Scratch scratch;

@@ -10,6 +10,24 @@ using namespace clray;
 using clray::test::check_of;
 using clray::test::SceneFolder;
 
+TEST_CASE("rules between sections name the place in the file, and a bare mesh's its file") {
+  const SceneFolder f;
+  const std::string ball = "[[component]]\nshape = \"sphere\"\n";
+  CHECK(f.complaint(ball + "[observer]\ndirection = \"station\"\n").find("s.toml:4:13: observer.direction: moves") ==
+        0);
+  CHECK(f.complaint(ball + "[[observer]]\nname = \"a\"\n[[observer]]\nname = \"b\"\ndirection = \"station\"\n")
+            .find("s.toml:7:13: observer.direction: moves") == 0);
+  CHECK(f.complaint(ball + "[source]\ndirection = \"sun\"\n").find("s.toml:4:13: source.direction: moves") == 0);
+  CHECK(f.complaint(ball +
+                    "[motion]\naxis = [0, 1, 0]\nperiod_s = 60\nstop_s = 1\nstep_deg = 3\n[station]\nrate_Hz = 1e12\n")
+            .find("s.toml:9:11: station.rate_Hz: makes 1e+12 shots") == 0);
+  SceneOptions option;
+  option.detectors = {"delay", "delays"};
+  CHECK(f.complaint(ball, ErrorCode::usage, option).find("--detector: ") == 0);
+  CHECK_THROWS_WITH(load_scene(f.write("far.obj", "v 1e12 0 0\nv 1000000000001 0 0\nv 1e12 1 0\nf 1 2 3\n")),
+                    doctest::Contains("far.obj: transform: the component, 1 m large"));
+}
+
 TEST_CASE("scene: --observer keeps what the scene says of its observers but for the direction") {
   const SceneFolder f;
   const std::string plate = "[[component]]\nfile = \"plate.obj\"\n[source]\nkind = \"sun\"\n";
@@ -77,7 +95,8 @@ TEST_CASE("scene: whole turns leave angles exactly; places too far out for a sha
         std::string::npos);
   CHECK(f.complaint(part("hinge = { axis = [0, 0, 1], point = [0, 0, 1e13] }")).find("component.transform: ") !=
         std::string::npos);
-  CHECK(f.complaint("reference_point = [1e12, 0, 0]\n" + part("")).find("reference_point: lies 1e+12 m") == 0);
+  CHECK(f.complaint("reference_point = [1e12, 0, 0]\n" + part("")).find("s.toml:1:19: reference_point: lies 1e+12 m") ==
+        0);
   f.write("far.obj", "v 1e14 0 0\nv 1.00000000000001e14 0 0\nv 1e14 1 0\nf 1 2 3\n");
   CHECK(f.complaint("[[component]]\nfile = \"far.obj\"\n").find("s.toml:1:1: component.transform: ") == 0);
 }

@@ -148,14 +148,13 @@ TEST_CASE("one place has one range") {
   CHECK(f.complaint(kBall + "[observer]\nrange_m = 2e6\n" + station) == "fine");
   CHECK(f.complaint(kBall + "[observer]\ndirection = [1, 0, 0]\nrange_m = 3e6\n" + station) == "fine");
   CHECK(f.complaint(kBall + "[source]\nkind = \"sun\"\n[observer]\nrange_m = 3e6\n" + station) == "fine");
-  CHECK(
-      f.complaint(kBall + "[observer]\nrange_m = 3e6\n" + station) ==
-      "observers[0].range_m: is 3000000 m, but this observer is at the source, whose range [station] gives as 2000000 "
-      "m; expected it there alone");
+  CHECK(f.complaint(kBall + "[observer]\nrange_m = 3e6\n" + station) ==
+        "s.toml:8:11: observer.range_m: is 3000000 m, but this observer is at the source, whose range [station] gives "
+        "as 2000000 "
+        "m; expected it there alone");
   f.write("r.csv", "time_s,range_m\n0,3e6\n1,3e6\n");
-  CHECK(
-      f.complaint(kBall + "[observer]\nrange_m = 3e6\n[station]\nranges = \"r.csv\"\n").find("observers[0].range_m") ==
-      0);
+  CHECK(f.complaint(kBall + "[observer]\nrange_m = 3e6\n[station]\nranges = \"r.csv\"\n")
+            .find("s.toml:8:11: observer.range_m: is 3000000 m") == 0);
 }
 
 TEST_CASE("a station's numbers are bounded so that no link budget overflows") {

@@ -67,7 +67,7 @@ TEST_CASE("toml: lengths and angles whose arithmetic would overflow or lose its 
   CHECK(f.complaint("reference_point = [0, 1e300, 0]\n" + sphere) ==
         "s.toml:1:19: reference_point: expected at most 1e+15 m, found 1e+300");
   CHECK(f.complaint(sphere + "transform = { scale = 1e-200 }\n") ==
-        "components[0]: radius: expected a length from 1e-15 to 1e+15 m, found 1e-200");
+        "s.toml:1:1: component: radius: expected a length from 1e-15 to 1e+15 m, found 1e-200");
 }
 
 TEST_CASE("toml: words out of a list") {
@@ -163,7 +163,10 @@ TEST_CASE("toml: materials that nobody defined, and duplicates") {
   const std::string ball = "[[component]]\nname = \"a\"\nshape = \"sphere\"\n";
   CHECK(f.complaint(ball + ball) == "s.toml:5:8: component.name: a second component of the name \"a\"");
   CHECK(f.complaint(kBall + "[[observer]]\n[[observer]]\n") ==
-        "s.toml:3:1: observer.name: missing; several observers must be named");
+        "s.toml:2:1: observer.name: missing; several observers must be named");
+  for (const char* order : {"[[observer]]\n[[observer]]\nname = \"a\"\n", "[[observer]]\nname = \"a\"\n[[observer]]\n"})
+    CHECK(f.complaint(kBall + order).find("observer.name: missing; several observers must be named") !=
+          std::string::npos);
   CHECK(f.complaint(kBall + "[[observer]]\nname = \"a\"\n[[observer]]\nname = \"a\"\n") ==
         "s.toml:5:8: observer.name: a second observer of the name \"a\"");
   CHECK(f.complaint(kBall + "[[detector]]\nkind = \"delay\"\n[[detector]]\nkind = \"delay\"\n") ==

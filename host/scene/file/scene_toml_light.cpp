@@ -50,16 +50,15 @@ void read_source(TomlTable& root, Scene* scene) {
 
 void read_observers(TomlTable& root, Scene* scene) {
   std::set<std::string> taken;
-  for (TomlTable& t : root.tables("observer")) {
+  std::vector<TomlTable> tables = root.tables("observer");
+  for (TomlTable& t : tables) {
     Observer o;
     read_keys(t, &o);
     if (o.monostatic) o.direction = scene->source.direction;
     if (const std::string fault = extinction_fault(*scene, o); !fault.empty()) t.fail("extinction_mag", fault);
-    if (!taken.insert(o.name).second) {
-      if (o.name.empty())
-        throw Error(ErrorCode::input, "observer.name: missing; several observers must be named", t.place());
-      t.fail("name", "a second observer of the name \"" + o.name + "\"");
-    }
+    if (o.name.empty() && tables.size() > 1)
+      throw Error(ErrorCode::input, "observer.name: missing; several observers must be named", t.place());
+    if (!taken.insert(o.name).second) t.fail("name", "a second observer of the name \"" + o.name + "\"");
     scene->observers.push_back(std::move(o));
   }
 }

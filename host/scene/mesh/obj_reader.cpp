@@ -109,7 +109,7 @@ class ObjReader {
   std::uint64_t vertex_index(std::string_view part, std::string_view corner) {
     const std::int64_t value = part_number(part, corner);
     const std::uint64_t count = count_[kVertex];
-    const char* expected = ", 1 to the number in the file or -1 to minus those so far was expected";
+    const char* expected = "; an index from 1 to the number in the file, or from -1 to minus that so far, was expected";
     if (value == INT64_MAX) text_.fail("vertex index " + quote_word(part) + " is beyond all" + expected);
     if (value == 0) text_.fail(std::string("vertex index 0") + expected);
     if (value < 0) {
