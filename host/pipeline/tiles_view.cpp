@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "clray/error.hpp"
+
 namespace clray {
 namespace {
 
@@ -83,6 +85,7 @@ std::vector<double> TilesView::spreads(std::uint64_t size, const Ask& ask) {
   std::vector<double>& values = values_[size];
   if (values.empty()) values = ask(stage_now().mixed, size);
   const std::size_t count = frontier_->mixed().size();
+  if (values.size() != count * replicates_) throw Error(ErrorCode::bug, "points of other tiles", "tiles");
   std::vector<double> spread(count);
   for (std::size_t t = 0; t < count; ++t) {
     const double* of_tile = values.data() + t * replicates_;
@@ -98,17 +101,22 @@ std::vector<double> TilesView::spreads(std::uint64_t size, const Ask& ask) {
 const TilesView::Stage& TilesView::stage(std::uint64_t points, const Ask& ask, Pause* pause) {
   const auto known = stages_.find(points);
   if (known != stages_.end()) return known->second;
-  const auto count = [&] { return frontier_->mixed().size(); };
-  if (frontier_ == nullptr || count() > points) begin(pause);
-  for (bool go = true; go && count() < std::min<std::uint64_t>(kFirstTiles, points);) {
-    std::vector<double> areas;
-    for (const Frontier::Tile& t : frontier_->mixed()) areas.push_back(t.at.area());
-    go = frontier_->cut(areas, kFirstTiles);
+  // The same steps on the way to any number of points, whatever was asked for before: from twice to twice as many.
+  if (frontier_ == nullptr || cut_to_ > points || !on_the_way_) {
+    begin(pause);
+    for (bool go = true; go && frontier_->mixed().size() < std::min<std::uint64_t>(kFirstTiles, points);) {
+      std::vector<double> areas;
+      for (const Frontier::Tile& t : frontier_->mixed()) areas.push_back(t.at.area());
+      go = frontier_->cut(areas, kFirstTiles);
+    }
+    cut_to_ = kFirstTiles;
+    on_the_way_ = true;
   }
-  // The same steps on the way to any number of points.
-  for (std::uint64_t size = kFirstTiles; size < points; size *= 2) {
-    if (2 * size <= count()) continue;
-    if (!frontier_->cut(spreads(size, ask), std::min(2 * size, points))) break;
+  while (cut_to_ < points) {
+    const std::uint64_t next = std::min(2 * cut_to_, points);
+    if (2 * cut_to_ > frontier_->mixed().size() && !frontier_->cut(spreads(cut_to_, ask), next)) break;
+    on_the_way_ = next == 2 * cut_to_;
+    cut_to_ = next;
   }
   return stages_.emplace(points, stage_now()).first->second;
 }

@@ -52,6 +52,8 @@ class TilesView {
   int smaller_ = 0;
   std::unique_ptr<Shadows> shadows_;
   std::unique_ptr<Frontier> frontier_;
+  std::uint64_t cut_to_ = 0;                             // the number of tiles that its last cut was asked for
+  bool on_the_way_ = true;                               // that any number of points passes
   std::map<std::uint64_t, Stage> stages_;                // by points
   std::map<std::uint64_t, std::vector<double>> values_;  // what the first epoch's points brought, the same
   double largest_ = 0.0;                                 // sum of the lanes' weights of a face

@@ -8,12 +8,12 @@
 #if CLRAY_PACKET
 
 /// Finds which connections something hides from the surfaces that the rays of a packet have met (`hits`: a bit each):
-/// a bit of hidden[k] for each of the first CLRAY_HIDDEN. Asks where shade() would. The packet that came was as wide as
-/// `width` of the beam; shadow rays go together that start no farther from each other, across their direction, than
-/// twice that.
+/// a bit of hidden[k] for each of the first CLRAY_HIDDEN. Asks where stage_shade() would, surface by surface, since
+/// some first hits may be solved and others not. The packet that came was as wide as `width` of the beam; shadow rays
+/// go together that start no farther from each other, across their direction, than twice that.
 static void packet_shadows(const Buffers* g, u32 view, const Surface* met, u32 hits, f64 width, u32* hidden) {
   for (u32 k = 0; k < CLRAY_PACKET_RAYS; ++k) hidden[k] = 0u;
-#if CLRAY_SHADOW && CLRAY_CONNECT && !CLRAY_SKIP_FIRST
+#if CLRAY_SHADOW && CLRAY_CONNECT
   const __global ClrayView* from = g->views + view;
   const f64 reach = 2.0 * width * f64_max(v3_length(v3_load(from->edge_u)), v3_length(v3_load(from->edge_v)));
   Packet p;
@@ -24,7 +24,10 @@ static void packet_shadows(const Buffers* g, u32 view, const Surface* met, u32 h
     if (!connection->shadow) continue;
     const vec3 o = v3_load(connection->direction);
     u32 left = 0u;
-    for (u32 k = 0; k < CLRAY_PACKET_RAYS; ++k) left |= ((hits >> k) & 1u) != 0u && faces(&met[k], o) ? 1u << k : 0u;
+    for (u32 k = 0; k < CLRAY_PACKET_RAYS; ++k) {
+      if (((hits >> k) & 1u) == 0u || counts_elsewhere(g, view, met[k].primitive)) continue;
+      left |= faces(&met[k], o) ? 1u << k : 0u;
+    }
     while (left != 0u) {
       p.rays = 0u;
       for (u32 k = 0; k < CLRAY_PACKET_RAYS; ++k) {

@@ -5,6 +5,7 @@
 #include "laws/laws.hpp"
 #include "scene/motion.hpp"
 #include "scene/spectrum.hpp"
+#include "support/scenes.hpp"
 
 namespace clray_test {
 
@@ -214,6 +215,17 @@ std::vector<Trial> order_trials(const RandomScene& random, Draw& draw) {
     for (clray::Component& c : s.components) {
       for (std::uint32_t& m : c.materials) m = place[m];
     }
+    trials.push_back(t);
+  }
+  // A program with packets takes seconds to build.
+  if (long_tests() || random.seed % 3 == 0) {
+    Trial t;
+    t.law = "rays in packets";
+    t.first = t.second = scene;
+    t.of_scene = true;
+    t.same_bits = true;
+    t.warnings = true;
+    t.second.trace.walk = "packet";
     trials.push_back(t);
   }
   if (scene.variants.size() > 1 || scene.source.bands.size() > 1 || scene.observers.size() > 1) {

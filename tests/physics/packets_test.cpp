@@ -112,6 +112,30 @@ TEST_CASE("shadow rays in packets give the digests of rays alone: soups, any siz
   check_same("grazing", aside(scene_of(sphere_mesh(48, 24, 1.0), lambert(0.5)), {0, 0, 1}, toward(1.55, 0.3), 15));
 }
 
+TEST_CASE("shadow rays in packets from first hits of which some are solved and some not") {
+  // The ball and what it may shade are sampled, toward the source or either observer; the rest is solved.
+  Scene scene = scene_of(plate_mesh(1.0, 1.0), lambert(0.8));
+  scene.components[0].transform.translate = {0.5, 0.0, 0.0};
+  clray::Component& wall = add(scene, plate_mesh(1.0, 1.0), lambert(0.3));
+  wall.transform.translate = {-0.5, 0.0, 0.0};
+  wall.transform.axis = {0.0, 1.0, 0.0};
+  wall.transform.angle_rad = radians(50.0);
+  add(scene, "sphere", {{"radius", 0.2}}, lambert(0.8)).transform.translate = {0.5, 0.1, 1.5};
+  for (const int bounces : {1, 3}) {
+    bistatic(scene, toward(0.63, 0.54), toward(1.27, -0.42));
+    scene.observers[0].name = "aside";
+    scene.observers.push_back(scene.observers[0]);
+    scene.observers[1].name = "at the source";
+    scene.observers[1].monostatic = true;
+    rays(scene, 15);
+    scene.trace.max_bounces = bounces;
+    scene.trace.method = clray::Method::points;
+    check_same("sampled", scene);
+    scene.trace.method = clray::Method::exact;
+    check_same("solved where no ball is", scene);
+  }
+}
+
 TEST_CASE("packets are taken where they may be and pay, or where they are asked for") {
   const auto in_packets = [](const Scene& scene) {
     const clray::Result result = run(scene);

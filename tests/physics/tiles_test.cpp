@@ -165,6 +165,23 @@ TEST_CASE("tiles: variants are those of runs alone, and seeds make other points"
   CHECK(run(tiled(body(), 14, 2)).digest == run(tiled(body(), 14, 2)).digest);
 }
 
+TEST_CASE("tiles of bodies so simple that no more can be cut: any number of points, whatever came before") {
+  for (const int triangles : {1, 2, 5, 12}) {
+    CAPTURE(triangles);
+    const clray::Scene scene = lambert_scene(mesh_of(soup(5, triangles, 0.02)), toward(0.2, 0.3));
+    const double exact = total(solve(scene)).value;
+    for (const int log2_points : {14, 18, 20}) {
+      const clray::Estimate a = total(run(tiled(scene, log2_points)));
+      CHECK(std::fabs(a.value - exact) <= 5.0 * a.standard_error + 1e-12 * exact);
+    }
+    // On the way to the target other numbers of points are tried; they must leave no trace in the answer's.
+    clray::Scene aimed = tiled(scene);
+    aimed.trace.target_error_percent = 0.01;
+    const clray::Result searched = run(aimed);
+    CHECK(std::fabs(total(searched).value - exact) <= 3.0 * 1e-4 * exact);
+  }
+}
+
 TEST_CASE("tiles say what stands in their way") {
   clray::Scene bounces = body();
   bounces.trace.max_bounces = 2;
