@@ -13,9 +13,8 @@
 namespace clray::io {
 
 std::string Writer::add(const std::string& stem, const std::string& extension) {
-  const std::string name = names.file(stem, extension);
-  files.push_back(name);
-  return name;
+  files.push_back(names.file(stem, extension));
+  return files.back();
 }
 
 TableFile Writer::table(const std::string& name, const std::string& what, const std::string& units) const {
