@@ -41,15 +41,27 @@ constexpr double kTimesNormal = 4.0;   // over that of normal replicates; 1 in 2
 constexpr double kLeastError = 1e-6;   // relative; a smaller spread is that of fixed-point rounding
 constexpr double kUnseenShare = 0.10;  // of a total
 
-/// Whether the body has normals that no ray met: true of curved shapes, and of meshes so fine that many facets were
-/// never hit. A flat face has one normal, which its first ray meets.
-bool curved(const Geometry& geometry, double rays) {
+double area_of(const Geometry& geometry, const ClrayPrimitive& primitive, const TableRow& shape) {
+  const double* d = geometry.shapes.data() + primitive.data;
+  if (!shape.faces)
+    return shape_area_of(static_cast<int>(primitive.shape), d + CLRAY_SHAPE_KEYS) * d[CLRAY_SHAPE_SCALE] *
+           d[CLRAY_SHAPE_SCALE];
+  const vec3 cross = v3_cross(v3_sub(v3_load(d + 3), v3_load(d)), v3_sub(v3_load(d + 6), v3_load(d)));
+  return 0.5 * v3_length(cross);
+}
+
+/// Whether the body has normals that no ray may have met: true of curved shapes, and of any face so small that few rays
+/// came to it, in a fine mesh or alone. A flat face has one normal, which its first ray meets. `rays`: for each m² of
+/// the beam.
+bool may_be_unmet(const Geometry& geometry, double rays_per_m2) {
   constexpr double kRaysPerFacet = 100.0;
   const std::vector<TableRow>& shapes = table("shape");
   for (const int row : geometry.shape_rows) {
     if (!shapes[static_cast<std::size_t>(row)].flat) return true;
   }
-  return kRaysPerFacet * static_cast<double>(geometry.report.triangles) > rays;
+  return std::any_of(geometry.primitives.begin(), geometry.primitives.end(), [&](const ClrayPrimitive& p) {
+    return rays_per_m2 * area_of(geometry, p, shapes[p.shape]) < kRaysPerFacet;
+  });
 }
 
 double bound_of_lane(const PassPlan& plan, std::size_t lane, double cos_half_phase) {
@@ -90,9 +102,11 @@ std::vector<std::string> doubtful_claims(const PassPlan& plan, const Geometry& g
   if (plan.request.paints() || plan.request.without_rays()) return warnings;
   const std::uint64_t fewest = *std::min_element(sums.points.begin(), sums.points.end());
   const double rays = static_cast<double>(fewest) * plan.request.replicates;
-  const bool sampled =
-      plan.traits.connect && !SumReader(plan, sums).adds_to(find_detector(plan, "intensity")->first_block);
-  const double share = sampled && curved(geometry, rays) ? unseen_share(plan, sums) : 0.0;
+  // Beside a solved first bounce rays find later ones, whose peaks are wide, and first hits of what is not solved.
+  const bool solved = SumReader(plan, sums).adds_to(find_detector(plan, "intensity")->first_block);
+  const bool sampled = plan.traits.connect && (!solved || !plan.unsolved.bits.empty());
+  const double beam_m2 = *std::max_element(plan.beams.area_m2.begin(), plan.beams.area_m2.end());
+  const double share = sampled && may_be_unmet(geometry, rays / beam_m2) ? unseen_share(plan, sums) : 0.0;
   if (share > kUnseenShare) {
     warnings.push_back(
         fmt::format("these surfaces can return a peak that the rays may have missed, with up to {:.2g} times a total: "
@@ -183,7 +197,8 @@ void warn_outside_window(Result* result) {
   if (worst == nullptr) return;
   const std::string where = record_place(*result, worst->key, "delay", count);
   result->warnings.push_back(
-      fmt::format("{:.2g} of the light lies outside the delay window ({}): give start_ns and stop_ns", most, where));
+      fmt::format("{} of the light lies outside the delay window ({}): give start_ns and stop_ns",
+                  most > 0.995 ? "all" : fmt::format("{:.2g}", most), where));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 // and the ellipses that the sphere covers on the plate toward the source and toward the observer.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "clray/error.hpp"
@@ -133,4 +134,32 @@ TEST_CASE("a curved shape before everything leaves nothing to solve, and one beh
   ball.transform.translate.z = -40.0;
   const clray::Estimate behind = run(scene).delay.at(0).intensity_m2_per_sr;
   CHECK(behind.exact_part == relative(kPlate / kPi * kSide * kSide).epsilon(1e-12));
+}
+
+TEST_CASE("a small glossy face that no ray met is warned of, alone among large ones or beside what is solved") {
+  const clray::Material glossy = ashikhmin_shirley(0.9, 0.0, 1e5);
+  const auto warned = [](const clray::Scene& scene) {
+    const clray::Result r = run(scene);
+    return std::any_of(r.warnings.begin(), r.warnings.end(),
+                       [](const std::string& w) { return w.find("may have missed") != std::string::npos; });
+  };
+  for (const bool round : {false, true}) {
+    CAPTURE(round);
+    clray::Scene scene = scene_of(plate_mesh(2.0, 2.0), lambert(0.3));
+    const double half = 1e-3;  // of 2^14 rays on 4 m² none comes to 4 mm²
+    clray::Component& facet =
+        round ? add(scene, "disk", {{"radius", half}}, glossy) : add(scene, plate_mesh(2.0 * half, 2.0 * half), glossy);
+    facet.transform.translate = {0.331, 0.217, 0.2};
+    monostatic(scene, {0, 0, 1});
+    rays(scene, 14);
+    scene.trace.method = round ? clray::Method::exact : clray::Method::points;
+    CHECK(warned(scene));
+    // A facet that spans the plate is met by all.
+    scene.components[1] = scene.components[0];
+    scene.components[1].name = "facet";
+    scene.components[1].materials = {1};
+    scene.components[1].transform.translate = {0.0, 0.0, 0.2};
+    scene.trace.method = clray::Method::points;
+    CHECK_FALSE(warned(scene));
+  }
 }

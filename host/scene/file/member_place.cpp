@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <sstream>
 #include <string_view>
 
 #include "clray/error.hpp"
@@ -37,14 +38,14 @@ struct Step {
 };
 
 /// The steps of a member's path; none where the text is no such path.
-std::vector<Step> steps_of(std::string_view member) {
+std::vector<Step> steps_of(const std::string& member) {
   std::vector<Step> steps;
-  while (!member.empty()) {
-    const std::size_t end = std::min(member.find('.'), member.size());
-    const std::string_view word = member.substr(0, end);
+  std::istringstream path(member);
+  for (std::string word; std::getline(path, word, '.');) {
+    Step step;
     const std::size_t bracket = word.find('[');
-    Step step{std::string(word.substr(0, bracket))};
-    if (bracket != std::string_view::npos)
+    step.key = word.substr(0, bracket);
+    if (bracket != std::string::npos)
       std::from_chars(word.data() + bracket + 1, word.data() + word.size(), step.number);
     if (steps.empty()) {
       const auto* const root =
@@ -53,7 +54,6 @@ std::vector<Step> steps_of(std::string_view member) {
       step.key = root->key;
     }
     steps.push_back(std::move(step));
-    member.remove_prefix(std::min(end + 1, member.size()));
   }
   return steps;
 }
