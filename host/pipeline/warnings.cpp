@@ -102,9 +102,12 @@ std::vector<std::string> doubtful_claims(const PassPlan& plan, const Geometry& g
   if (plan.request.paints() || plan.request.without_rays()) return warnings;
   const std::uint64_t fewest = *std::min_element(sums.points.begin(), sums.points.end());
   const double rays = static_cast<double>(fewest) * plan.request.replicates;
-  // Beside a solved first bounce rays find later ones, whose peaks are wide, and first hits of what is not solved.
-  const bool solved = SumReader(plan, sums).adds_to(find_detector(plan, "intensity")->first_block);
-  const bool sampled = plan.traits.connect && (!solved || !plan.unsolved.bits.empty());
+  // Beside a solved first bounce rays find later ones, whose peaks are wide, and first hits of what is not solved. What
+  // connects to no observer has no intensity.
+  const auto solved = [&] {
+    return plan.unsolved.bits.empty() && SumReader(plan, sums).adds_to(find_detector(plan, "intensity")->first_block);
+  };
+  const bool sampled = plan.traits.connect && !solved();
   const double beam_m2 = *std::max_element(plan.beams.area_m2.begin(), plan.beams.area_m2.end());
   const double share = sampled && may_be_unmet(geometry, rays / beam_m2) ? unseen_share(plan, sums) : 0.0;
   if (share > kUnseenShare) {
