@@ -25,21 +25,47 @@ typedef struct Points {
   i64 order[CLRAY_TOGETHER], face[CLRAY_TOGETHER];  // -1: nothing
 } Points;
 
-/// A face shows itself to the points that it is nearest to. Of faces in one place the first in order is seen. Without
-/// branches, so that compilers take several points at once.
+/// What of a face its points are held against.
+typedef struct Outline {
+  f64 x[3], y[3], dx[3], dy[3], depth0, slope_x, slope_y;
+} Outline;
+
+CLRAY_FN Outline outline_of(const CLRAY_GLOBAL ClrayFace* face) {
+  Outline o;
+  for (u32 i = 0; i < 3u; ++i) {
+    const u32 j = i == 2u ? 0u : i + 1u;
+    o.x[i] = face->x[i];
+    o.y[i] = face->y[i];
+    o.dx[i] = face->x[j] - face->x[i];
+    o.dy[i] = face->y[j] - face->y[i];
+  }
+  o.depth0 = face->depth0;
+  o.slope_x = face->slope_x;
+  o.slope_y = face->slope_y;
+  return o;
+}
+
+/// Whether a place lies within a face. Without branches, so that compilers take several points at once.
+CLRAY_FN u32 outline_holds(const Outline* o, f64 x, f64 y) {
+  const f64 a0 = o->dy[0] * (x - o->x[0]), a1 = o->dy[1] * (x - o->x[1]), a2 = o->dy[2] * (x - o->x[2]);
+  const f64 s0 = fma(o->dx[0], y - o->y[0], -a0), s1 = fma(o->dx[1], y - o->y[1], -a1);
+  const f64 s2 = fma(o->dx[2], y - o->y[2], -a2);
+  return (s0 >= 0.0) & (s1 >= 0.0) & (s2 >= 0.0);
+}
+
+CLRAY_FN f64 outline_depth(const Outline* o, f64 x, f64 y) {
+  return fma(o->slope_y, y - o->y[0], fma(o->slope_x, x - o->x[0], o->depth0));
+}
+
+/// A face shows itself to the points that it is nearest to. Of faces in one place the first in order is seen.
 CLRAY_FN void show_face(const CLRAY_GLOBAL ClrayFace* face, u32 own, Points* p) {
-  const f64 x0 = face->x[0], x1 = face->x[1], x2 = face->x[2], y0 = face->y[0], y1 = face->y[1], y2 = face->y[2];
-  const f64 margin = face->margin, depth0 = face->depth0, slope_x = face->slope_x, slope_y = face->slope_y;
-  const f64 dx0 = x1 - x0, dx1 = x2 - x1, dx2 = x0 - x2, dy0 = y1 - y0, dy1 = y2 - y1, dy2 = y0 - y2;
+  const Outline o = outline_of(face);
+  const f64 margin = face->margin;
   const i64 order = (i64)face->order;
   for (u32 k = 0; k < CLRAY_TOGETHER; ++k) {
-    const f64 x = p->x[k], y = p->y[k];
-    const f64 a0 = dy0 * (x - x0), a1 = dy1 * (x - x1), a2 = dy2 * (x - x2);
-    const f64 s0 = fma(dx0, y - y0, -a0), s1 = fma(dx1, y - y1, -a1), s2 = fma(dx2, y - y2, -a2);
-    const f64 depth = fma(slope_y, y - y0, fma(slope_x, x - x0, depth0)), gap = depth - p->depth[k];
-    const u32 inside = (s0 >= 0.0) & (s1 >= 0.0) & (s2 >= 0.0);
+    const f64 depth = outline_depth(&o, p->x[k], p->y[k]), gap = depth - p->depth[k];
     const u32 alike = (gap >= -margin) & (gap <= margin) & (order < p->order[k]);
-    const u32 seen = inside & ((gap > margin) | alike);
+    const u32 seen = outline_holds(&o, p->x[k], p->y[k]) & ((gap > margin) | alike);
     p->depth[k] = seen ? depth : p->depth[k];
     p->order[k] = seen ? order : p->order[k];
     p->face[k] = seen ? (i64)own : p->face[k];
@@ -53,19 +79,15 @@ typedef struct LitPoints {
 } LitPoints;
 
 /// A face of that beam shades the points before which it lies. Of faces in one place the first in order is lit, as it
-/// is the one that is seen. Without branches, as in show_face().
+/// is the one that is seen.
 CLRAY_FN void shade_points(const CLRAY_GLOBAL ClrayFace* face, u32 own, LitPoints* p) {
-  const f64 x0 = face->x[0], x1 = face->x[1], x2 = face->x[2], y0 = face->y[0], y1 = face->y[1], y2 = face->y[2];
-  const f64 own_margin = face->margin, depth0 = face->depth0, slope_x = face->slope_x, slope_y = face->slope_y;
-  const f64 dx0 = x1 - x0, dx1 = x2 - x1, dx2 = x0 - x2, dy0 = y1 - y0, dy1 = y2 - y1, dy2 = y0 - y2;
+  const Outline o = outline_of(face);
+  const f64 own_margin = face->margin;
   const i64 order = (i64)face->order;
   for (u32 k = 0; k < CLRAY_TOGETHER; ++k) {
-    const f64 x = p->x[k], y = p->y[k];
-    const f64 a0 = dy0 * (x - x0), a1 = dy1 * (x - x1), a2 = dy2 * (x - x2);
-    const f64 s0 = fma(dx0, y - y0, -a0), s1 = fma(dx1, y - y1, -a1), s2 = fma(dx2, y - y2, -a2);
-    const f64 depth = fma(slope_y, y - y0, fma(slope_x, x - x0, depth0)), gap = depth - p->depth[k];
+    const f64 gap = outline_depth(&o, p->x[k], p->y[k]) - p->depth[k];
     const f64 margin = own_margin > p->margin[k] ? own_margin : p->margin[k];
-    const u32 inside = (s0 >= 0.0) & (s1 >= 0.0) & (s2 >= 0.0) & ((i64)own != p->own[k]);
+    const u32 inside = outline_holds(&o, p->x[k], p->y[k]) & ((i64)own != p->own[k]);
     const u32 alike = (gap >= -margin) & (order < p->order[k]);
     p->dark[k] = (inside & ((gap > margin) | alike)) ? 1 : p->dark[k];
   }
