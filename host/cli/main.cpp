@@ -27,6 +27,7 @@
 #include "helper.hpp"
 #include "report.hpp"
 #include "signals.hpp"
+#include "text/temporaries.hpp"
 #include "text/text.hpp"
 
 namespace {
@@ -146,6 +147,7 @@ class Run {
     saving_.from = arguments_.from;
     saving_.share = arguments_.share;
     const std::string file = cli::sums_file(folder);
+    text::remove_unfinished(file);
     if (saving_.keep || saving_.every_s > 0.0) saving_.file = file;
     if (saving_.file.empty() || ::access(file.c_str(), F_OK) != 0) return;
     if (!is_saved(file))

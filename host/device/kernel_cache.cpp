@@ -13,6 +13,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "clray/error.hpp"
 #include "device/program.hpp"
 #include "text/hash.hpp"
 #include "text/output_file.hpp"
@@ -78,20 +79,11 @@ void write_kept(const Kept& kept, const std::string& content) {
   std::error_code error;
   fs::create_directories(kept.path.parent_path(), error);
   if (error) return;
-  std::string temporary = kept.path.string() + "-XXXXXX";
-  const int file = mkstemp(temporary.data());
-  if (file < 0) return;
-  const std::string text = kept.text_of(content);
-  bool whole = true;
-  for (std::size_t at = 0; whole && at < text.size();) {
-    const ssize_t written = write(file, text.data() + at, text.size() - at);
-    whole = written > 0;
-    at += whole ? static_cast<std::size_t>(written) : 0;
+  try {
+    text::replace_output_file(kept.path.string(), kept.text_of(content));  // whole, even if others write it as well
+  } catch (const Error&) {
+    // It is built again.
   }
-  whole = whole && fsync(file) == 0;
-  close(file);
-  if (whole) fs::rename(temporary, kept.path, error);  // so it appears whole, even if others write it as well
-  if (!whole || error) fs::remove(temporary, error);
 }
 
 Kept note_of(const OpenedDevice& opened, const std::string& what) {

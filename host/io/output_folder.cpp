@@ -12,7 +12,6 @@
 #include <cstdio>
 #include <cstring>
 #include <nlohmann/json.hpp>
-#include <random>
 #include <set>
 #include <utility>
 
@@ -173,27 +172,11 @@ OutputFolder::OutputFolder(const std::string& target) : target_(resolve(target))
       fail_output("make the folder", *parent, code);
     }
   }
-  if (const int code = make_temporary()) {
+  remove_unfinished(target_.string());
+  if (const int code = unfinished_.make(target_.string(), Unfinished::Kind::folder)) {
     remove_leftovers();
     fail_output("write in the folder", target_.parent_path(), code);
   }
-}
-
-/// Makes the unfinished folder beside the target, hidden, under a name that nobody has. Returns an errno or 0.
-int OutputFolder::make_temporary() {
-  // Not mkdtemp, because the result shall have the permissions that the process gives to folders.
-  std::random_device random;
-  const std::string stem = "." + target_.filename().string().substr(0, 200) + ".";
-  for (int attempt = 0; attempt < 100; ++attempt) {
-    const fs::path name = target_.parent_path() / (stem + hex16(random()).substr(8));
-    if (::mkdir(name.c_str(), 0777) == 0) {
-      temporary_ = name;
-      noted_ = std::make_unique<Temporary>(name.string());
-      return 0;
-    }
-    if (errno != EEXIST) return errno;
-  }
-  return EEXIST;
 }
 
 OutputFolder::~OutputFolder() {
@@ -201,33 +184,35 @@ OutputFolder::~OutputFolder() {
 }
 
 void OutputFolder::remove_leftovers() noexcept {
-  std::error_code ignored;
+  if (kept_) return;
   if (done_) {
-    if (!temporary_.empty()) remove_result(temporary_);
+    remove_result(folder());
     return;
   }
-  if (!temporary_.empty()) fs::remove_all(temporary_, ignored);
-  temporary_.clear();
-  noted_.reset();
+  std::error_code ignored;
+  if (!folder().empty()) fs::remove_all(folder(), ignored);
   for (auto parent = made_parents_.rbegin(); parent != made_parents_.rend(); ++parent) ::rmdir(parent->c_str());
   made_parents_.clear();
 }
 
 std::string OutputFolder::keep() noexcept {
   std::error_code error;
-  if (temporary_.empty() || fs::is_empty(temporary_, error) || error) return {};
-  done_ = true;
-  noted_.reset();
-  return std::exchange(temporary_, fs::path()).string();
+  const std::string& here = folder();
+  if (here.empty() || fs::is_empty(here, error) || error) return {};
+  kept_ = true;
+  unfinished_.forget();
+  // Under its present name the next run would remove it.
+  const std::string kept = target_.string() + ".unfinished" + here.substr(here.size() - 9);
+  return ::rename(here.c_str(), kept.c_str()) == 0 ? kept : here;
 }
 
 void OutputFolder::commit() {
-  for (const auto& entry : fs::directory_iterator(temporary_)) sync_to_disk(entry.path());
-  sync_to_disk(temporary_);
+  for (const auto& entry : fs::directory_iterator(folder())) sync_to_disk(entry.path());
+  sync_to_disk(folder());
   check_replaceable(target_);  // it may have changed while we traced
-  if (const int code = exchange(temporary_, target_)) fail_output("put the result at", target_, code);
+  if (const int code = io::exchange(folder(), target_)) fail_output("put the result at", target_, code);
   done_ = true;
-  noted_.reset();  // what stands there now is the older result
+  unfinished_.forget();  // what stands there now is the older result
   sync_to_disk(target_.parent_path());
 }
 

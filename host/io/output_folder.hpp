@@ -4,7 +4,6 @@
 #pragma once
 
 #include <filesystem>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -24,22 +23,22 @@ class OutputFolder {
   OutputFolder& operator=(const OutputFolder&) = delete;
 
   /// Where a file is to be written.
-  std::string path(const std::string& file) const { return (temporary_ / file).string(); }
-  std::string folder() const { return temporary_.string(); }
+  std::string path(const std::string& file) const { return unfinished_.path() + "/" + file; }
+  const std::string& folder() const { return unfinished_.path(); }
 
   /// Forces everything to disk and puts it in place. Throws Error(output); the old result is then still there.
   void commit();
-  /// Leaves what is written where it is, since it cannot be put in place. Returns the folder, or "" if it is empty.
+  /// Leaves what is written beside the target, since it cannot be put in place. Returns the folder, or "" if it is
+  /// empty.
   std::string keep() noexcept;
 
  private:
-  int make_temporary();
   void remove_leftovers() noexcept;
 
-  std::filesystem::path target_, temporary_;
-  std::unique_ptr<text::Temporary> noted_;
+  std::filesystem::path target_;
+  text::Unfinished unfinished_;
   std::vector<std::filesystem::path> made_parents_;  ///< outermost first
-  bool done_ = false;
+  bool done_ = false, kept_ = false;
 };
 
 }  // namespace clray::io

@@ -60,17 +60,14 @@ void write_output_file(const std::string& path, std::string_view bytes) {
 }
 
 void replace_output_file(const std::string& path, std::string_view bytes) {
-  const std::string beside = path + ".new";
-  const Temporary noted(beside);
-  OutputFile file(beside);
+  remove_unfinished(path);
+  Unfinished beside;
+  if (const int code = beside.make(path, Unfinished::Kind::file)) fail_output("write", path, code);
+  OutputFile file(beside.path());
   file.put(bytes);
   file.sync();
   file.close();
-  if (::rename(beside.c_str(), path.c_str()) != 0) {
-    const int code = errno;
-    discard_output_file(beside);
-    fail_output("write", path, code);
-  }
+  if (::rename(beside.path().c_str(), path.c_str()) != 0) fail_output("write", path, errno);
   const std::size_t slash = path.rfind('/');
   sync_to_disk(slash == std::string::npos ? "." : path.substr(0, slash + 1));
 }

@@ -39,7 +39,7 @@ std::string folder_fault(const std::string& folder);
 /// Forces a file, or the entries of a folder, to disk. Throws Error(output).
 void sync_to_disk(const std::string& path);
 
-/// Puts a file of these bytes at `path`, whole: it is written beside it as `path`.new and forced to disk before it
+/// Puts a file of these bytes at `path`, whole: it is written beside it (see Unfinished) and forced to disk before it
 /// takes the place. Throws Error(output); what stood there is then still there.
 void replace_output_file(const std::string& path, std::string_view bytes);
 

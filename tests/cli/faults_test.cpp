@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // A disk that fails at any one call while a result is written: the program ends with status 5 or has written a whole
-// result, and an older result stays whole until then. tests/support/faults.cpp makes the calls fail.
+// result, and an older result stays whole until then. A program that is killed at any one call: the next run removes
+// what it left. tests/support/faults.cpp makes the calls fail, and kills.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <random>
 
@@ -32,6 +34,17 @@ std::string scene() {
          "[[detector]]\nkind = \"hyperspectral\"\nwidth = 8\nheight = 8\nsamples = 4\n[trace]\nmethod = \"points\"\n";
 }
 
+/// What stands in a folder, in order.
+std::vector<std::string> names(const Scratch& scratch) {
+  std::vector<std::string> all;
+  for (const auto& entry : fs::directory_iterator(scratch.path)) all.push_back(entry.path().filename());
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+/// The run's result, what it was told and said, and files of others.
+const std::vector<std::string> kOwn{".err", ".out", ".out.clray-mine", ".out.mine", "out", "square.obj"};
+
 }  // namespace
 
 TEST_CASE("whichever call fails while a result is written: status 5 or a whole result, and the older one stays") {
@@ -56,6 +69,8 @@ TEST_CASE("whichever call fails while a result is written: status 5 or a whole r
   REQUIRE(before != after);
   const int calls = std::stoi(slurp(scratch / "total"));
   REQUIRE(calls > 100);
+  for (const char* kind : {"write", "close", "flush", "sync", "rename", "mkdir", "open"})
+    CHECK_MESSAGE(contains(slurp(scratch / "total"), kind), kind);
   std::mt19937 random(3);
   const bool all = ::getenv("CLRAY_LONG_TESTS") != nullptr;
   int failed = 0;
@@ -75,12 +90,51 @@ TEST_CASE("whichever call fails while a result is written: status 5 or a whole r
     failed += outcome.status == 5;
     for (const auto& entry : fs::directory_iterator(scratch.path)) {
       const std::string name = entry.path().filename();
-      CHECK(name.find(".sums.new") == std::string::npos);
-      if (name.rfind(".out.", 0) != 0) continue;
+      CHECK(name.rfind(".out.", 0) != 0);
+      if (name.rfind("out.unfinished-", 0) != 0) continue;
       CHECK(contains(outcome.err, "the files that were finished are in"));
       fs::remove_all(entry.path());
     }
   }
   CHECK(failed > 0);
   MESSAGE(failed << " failed of " << calls << " calls");
+}
+
+TEST_CASE("what a process leaves that is killed while it writes, the next run removes, and nothing else") {
+  const Scratch scratch;
+  spit(scratch / "square.obj", square());
+  const std::vector<std::string> whole{"--device", "cpu",        "--method", "points", "--rays",    "1024",
+                                       "--quiet",  "--no-plots", "--out",    "out",    "square.obj"};
+  std::vector<std::string> saving = whole;
+  saving.push_back("--keep-sums");
+  spit(scratch / ".out.mine", "mine");
+  spit(scratch / ".out.clray-mine", "mine");
+  std::mt19937 random(4);
+  const bool all = ::getenv("CLRAY_LONG_TESTS") != nullptr;
+  for (const std::string part : {"out.sums", "/.out."}) {
+    std::vector<std::string> environment{std::string("LD_PRELOAD=") + CLRAY_FAULTS, "CLRAY_FAULT_IN=" + part,
+                                         "CLRAY_FAULT_TOTAL=" + (scratch / "total")};
+    REQUIRE(clray(scratch, saving, environment).status == 0);
+    const int calls = std::stoi(slurp(scratch / "total"));
+    fs::remove(scratch / "total");
+    fs::remove(scratch / "out.sums");
+    environment[2] = "CLRAY_FAULT_KILLS=1";
+    environment.emplace_back();
+    const int most = all || calls < 8 ? calls : 8;
+    REQUIRE(most > 2);
+    int left = 0;
+    for (int k = 1; k <= most; ++k) {
+      const int at = most == calls ? k : 1 + static_cast<int>(random() % static_cast<unsigned>(calls));
+      CAPTURE(part);
+      CAPTURE(at);
+      environment[3] = "CLRAY_FAULT_AT=" + std::to_string(at);
+      REQUIRE(clray(scratch, saving, environment).status == 128 + SIGKILL);
+      left += static_cast<int>(names(scratch).size() > kOwn.size());
+      const auto next = clray(scratch, whole);
+      CAPTURE(next.err);
+      REQUIRE(next.status == 0);
+      CHECK(names(scratch) == kOwn);
+    }
+    CHECK(left > 0);
+  }
 }
