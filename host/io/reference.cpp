@@ -186,7 +186,7 @@ bool has_name(const List& list, const std::string& name) {
 
 /// Whether results of the scene may have these names. Some detectors have no observer.
 bool may_have(const Scene& scene, const std::array<std::string, 3>& names) {
-  const auto& [detector, observer, variant] = names;
+  const std::string &detector = names[0], &observer = names[1], &variant = names[2];  // C++17 captures no bindings
   const bool measured = std::any_of(scene.detectors.begin(), scene.detectors.end(), [&](const DetectorSpec& d) {
     return (d.name.empty() ? d.kind : d.name) == detector;
   });
