@@ -5,6 +5,7 @@
 
 #include "body/geometry.hpp"
 #include "body/portable_tables.hpp"
+#include "scene/tables.hpp"
 
 namespace clray {
 
@@ -38,6 +39,15 @@ void shape_extent(const Geometry& geometry, int row, std::uint32_t data, const R
   const double scale = d[CLRAY_SHAPE_SCALE];
   *high = std::fma(scale, shape_support_of(row, d + CLRAY_SHAPE_KEYS, local.data()), origin);
   *low = std::fma(-scale, shape_support_of(row, d + CLRAY_SHAPE_KEYS, away.data()), origin);
+}
+
+double primitive_area(const Geometry& geometry, const ClrayPrimitive& primitive) {
+  static const std::vector<TableRow>& shapes = table("shape");  // looked up once: bodies have millions of primitives
+  const double* d = geometry.shapes.data() + primitive.data;
+  if (!shapes[primitive.shape].faces)
+    return shape_area_of(static_cast<int>(primitive.shape), d + CLRAY_SHAPE_KEYS) * d[CLRAY_SHAPE_SCALE] *
+           d[CLRAY_SHAPE_SCALE];
+  return 0.5 * v3_length(v3_cross(v3_sub(v3_load(d + 3), v3_load(d)), v3_sub(v3_load(d + 6), v3_load(d))));
 }
 
 void body_extent(const Geometry& geometry, const std::vector<RigidMotion>& motions, const Point& direction, double* low,

@@ -80,6 +80,9 @@ Point rotated(const std::array<double, 9>& matrix, const Point& x);
 void shape_extent(const Geometry& geometry, int row, std::uint32_t data, const RigidMotion& motion,
                   const Point& direction, double* low, double* high);
 
+/// The area of a primitive, m².
+double primitive_area(const Geometry& geometry, const ClrayPrimitive& primitive);
+
 /// Least and greatest x·direction over the body with its parts in place (exact up to rounding).
 void body_extent(const Geometry& geometry, const std::vector<RigidMotion>& motions, const Point& direction, double* low,
                  double* high);

@@ -257,21 +257,25 @@ int run(int argc, char** argv, cli::Signals& signals, cli::KernelFolder& kernels
   Warnings warnings;
   Scene scene = load_scene(arguments.scene, arguments.scene_options);
   cli::apply(arguments, scene);
-  if (const std::string fault = size_fault(scene, ""); !fault.empty()) throw Error(ErrorCode::input, fault);
-  check_windows(scene);
-  if (arguments.check) {
-    print(describe_scene(scene) + describe_pass(scene));  // the warnings, too
-    return 0;
+  try {
+    if (const std::string fault = size_fault(scene, ""); !fault.empty()) throw Error(ErrorCode::input, fault);
+    check_windows(scene);
+    if (arguments.check) {
+      print(describe_scene(scene) + describe_pass(scene));  // the warnings, too
+      return 0;
+    }
+    warnings.show(scene.warnings);
+    if (!kernels.trouble().empty()) warnings.show({kernels.trouble()});
+    if (arguments.dump_kernel) {
+      Device device(arguments.device);
+      print(kernel_source(scene, device));
+      return 0;
+    }
+    if (arguments.verb == "verify") return verify_sums(arguments, scene, signals);
+    return Run(arguments, scene, signals, kernels, job, warnings).trace_and_write(start, seconds_since(start));
+  } catch (const Error& error) {
+    throw placed_in_file(error, arguments.scene);  // what a plan finds is said of the scene's member
   }
-  warnings.show(scene.warnings);
-  if (!kernels.trouble().empty()) warnings.show({kernels.trouble()});
-  if (arguments.dump_kernel) {
-    Device device(arguments.device);
-    print(kernel_source(scene, device));
-    return 0;
-  }
-  if (arguments.verb == "verify") return verify_sums(arguments, scene, signals);
-  return Run(arguments, scene, signals, kernels, job, warnings).trace_and_write(start, seconds_since(start));
 }
 
 int fault(const char* format, const std::string& words, ErrorCode code) {

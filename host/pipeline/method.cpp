@@ -26,6 +26,8 @@ constexpr double kSecondsPerTreeFace = 2e-6;                               // of
 constexpr double kSecondsPerRay = 0.1e-6, kSecondsPerLevel = 0.06e-6;      // and of each level of that tree
 constexpr double kTilesOfPercent = 1000.0, kRaysOfPercent = 3000.0;        // that reach 1 %
 constexpr double kTilesPower = 1.5, kRaysPower = 0.75;                     // with which errors fall (docs/error.md)
+constexpr double kRandomPower = 0.5;                                       // the same while faces are smaller
+constexpr double kSeenShare = 0.5;                                         // of the faces that look at the observer
 constexpr double kSearchAndConfirm = 3.0;                                  // times as many rays as the answer's
 constexpr double kMuchDearer = 10.0;
 
@@ -108,11 +110,31 @@ double seconds_to_solve(const Geometry& geometry, std::size_t times) {
   return kSecondsPerFace * static_cast<double>(geometry.primitives.size()) * static_cast<double>(times);
 }
 
+/// How many faces of one size would share their area as unevenly as those of a body: a spacecraft of 20,000 faces
+/// counts as 170, since few of them are most of it.
+double even_faces(const Geometry& geometry) {
+  double sum = 0.0, squares = 0.0;
+  for (const ClrayPrimitive& p : geometry.primitives) {
+    const double area = primitive_area(geometry, p);
+    sum += area;
+    squares += area * area;
+  }
+  return squares > 0.0 ? sum * sum / squares : 0.0;
+}
+
+/// How many tiles reach an error, %. Where they are larger than the faces that matter, their points are as good as
+/// random ones; then errors fall faster.
+double tiles_to(double percent, const Geometry& geometry) {
+  const double turn = std::max(kTilesOfPercent, kSeenShare * even_faces(geometry));
+  const double reached = std::pow(kTilesOfPercent / turn, kRandomPower);  // at that number, %
+  const double tiles = percent > reached ? kTilesOfPercent * std::pow(percent, -1.0 / kRandomPower)
+                                         : turn * std::pow(reached / percent, 1.0 / kTilesPower);
+  return std::max(static_cast<double>(kFirstPoints), tiles);
+}
+
 /// What tiles take to reach the target, s on one core. `elsewhere`: observers that are not at the source.
 double seconds_of_tiles(const Scene& scene, const Geometry& geometry, std::size_t views, std::size_t elsewhere) {
-  const double finer = 1.0 / scene.trace.target_error_percent;
-  const double tiles =
-      std::max(static_cast<double>(kFirstPoints), kTilesOfPercent * std::pow(finer, 1.0 / kTilesPower));
+  const double tiles = tiles_to(scene.trace.target_error_percent, geometry);
   const auto faces = static_cast<double>(geometry.primitives.size());
   const double seen = kSecondsPerSeenFace * faces + kSecondsPerSeenTile * tiles;
   const bool at_source = scene.observers.size() > elsewhere;
@@ -127,14 +149,16 @@ double seconds_of_rays(const Geometry& geometry, double rays) {
   return kSecondsPerTreeFace * faces + (kSecondsPerRay + kSecondsPerLevel * std::log2(faces + 1.0)) * rays;
 }
 
-/// What rays take to the target, or as many as are traced by default.
-double seconds_of_points(const Scene& scene, const Geometry& geometry, std::size_t views) {
+/// What rays take to the target, or as many as are traced by default. Each asks what hides its hit from every observer
+/// elsewhere.
+double seconds_of_points(const Scene& scene, const Geometry& geometry, std::size_t views, std::size_t elsewhere) {
   const double least = static_cast<double>(kFirstPoints) * scene.trace.replicates;
+  const double asked = 1.0 + static_cast<double>(elsewhere);
   if (scene.trace.target_error_percent == 0.0)
-    return seconds_of_rays(geometry, std::max(static_cast<double>(kDefaultRays), least * static_cast<double>(views)));
-  const double finer = 1.0 / scene.trace.target_error_percent;
-  const double answer = std::max(least, kRaysOfPercent * std::pow(finer, 1.0 / kRaysPower));
-  return seconds_of_rays(geometry, kSearchAndConfirm * answer * static_cast<double>(views));
+    return seconds_of_rays(geometry,
+                           asked * std::max(static_cast<double>(kDefaultRays), least * static_cast<double>(views)));
+  const double answer = std::max(least, kRaysOfPercent * std::pow(scene.trace.target_error_percent, -1.0 / kRaysPower));
+  return seconds_of_rays(geometry, asked * kSearchAndConfirm * answer * static_cast<double>(views));
 }
 
 /// Why tiles cannot find a detector's numbers; empty: they can.
@@ -201,11 +225,11 @@ MethodChoice choose_method(const Scene& scene, const Geometry& geometry, const D
   }
   if (t.rays != 0) return points(fmt::format("rays = {} are asked for", t.rays));
   if (!why.empty()) return points(why);
-  const double seconds = seconds_to_solve(geometry, views * sights_of(scene, detector));
-  const double with_rays = seconds_of_points(scene, geometry, views);
+  const std::size_t sights = sights_of(scene, detector);
+  const double seconds = seconds_to_solve(geometry, views * sights);
+  const double with_rays = seconds_of_points(scene, geometry, views, sights - 1);
   if (t.target_error_percent > 0.0) {
-    const double with_tiles =
-        no_tiles.empty() ? seconds_of_tiles(scene, geometry, views, sights_of(scene, detector) - 1) : HUGE_VAL;
+    const double with_tiles = no_tiles.empty() ? seconds_of_tiles(scene, geometry, views, sights - 1) : HUGE_VAL;
     const std::string sooner = fmt::format("they reach {:g} % sooner than all is solved", t.target_error_percent);
     if (with_rays < std::min(seconds, with_tiles)) return points(sooner);
     if (with_tiles < seconds) return {PassMethod::tiles, sooner};

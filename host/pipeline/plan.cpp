@@ -232,6 +232,10 @@ double detector_value(const DetectorSpec& spec, const std::string& key) {
   throw Error(ErrorCode::bug, "detector " + spec.kind + " has no key " + key);
 }
 
+std::string member_of(const Scene& scene, const DetectorSpec& spec) {
+  return "detectors[" + std::to_string(&spec - scene.detectors.data()) + "]";
+}
+
 PassPlan plan_pass(const Scene& scene, const Geometry& geometry, PassRequest request, bool reflectances) {
   PassPlan plan;
   plan.request = std::move(request);

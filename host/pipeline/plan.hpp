@@ -132,5 +132,7 @@ const PassDetector* find_detector(const PassPlan& plan, const std::string& id);
 
 /// A key of a detector, or its default.
 double detector_value(const DetectorSpec& spec, const std::string& key);
+/// What errors call one of the scene's own detectors: the member of the scene that it is.
+std::string member_of(const Scene& scene, const DetectorSpec& spec);
 
 }  // namespace clray

@@ -31,7 +31,7 @@ void check_windows(const Scene& scene) {
   for (PassRequest& request : pass_requests(scene, geometry)) {
     const PassPlan plan = plan_pass(scene, geometry, std::move(request), false);
     if (const std::string fault = memory_fault(bytes_of(plan.layout)); !fault.empty())
-      throw Error(ErrorCode::input, "bin_ps: " + fault, "detector " + shown_name(*found));
+      throw Error(ErrorCode::input, fault, member_of(scene, *found) + ".bin_ps");
   }
 }
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "body/geometry.hpp"
 #include "body/portable_tables.hpp"
 #include "pipeline/detector/intensity.hpp"
 #include "pipeline/estimate.hpp"
@@ -25,11 +26,15 @@ std::string reason(const Scene& scene, const std::string& by) {
   return "interrupted";
 }
 
-std::string missed_target(const Scene& scene, const Ending& ending) {
+std::string missed_target(const Scene& scene, const Ending& ending, bool partial) {
   const double target = scene.trace.target_error_percent, reached = 100.0 * ending.half_width;
   const std::string asked = fmt::format("the target error of {:g} %", target);
-  if (std::isnan(reached)) return fmt::format("{} is n/a: all totals are zero after {} rays", asked, ending.rays);
   const std::string why = reason(scene, ending.by);
+  if (ending.rays == 0) return fmt::format("{} was not reached: {}", asked, why);
+  if (std::isnan(reached)) return fmt::format("{} is n/a: all totals are zero after {} rays", asked, ending.rays);
+  if (reached <= target && partial)
+    return fmt::format("{} was met ({:.3g} % after {} rays) by what is finished; other parts are missing: {}", asked,
+                       reached, ending.rays, why);
   if (reached <= target)
     return fmt::format("{} was met ({:.3g} % after {} rays) but not confirmed on fresh rays: {}", asked, reached,
                        ending.rays, why);
@@ -41,15 +46,6 @@ constexpr double kTimesNormal = 4.0;   // over that of normal replicates; 1 in 2
 constexpr double kLeastError = 1e-6;   // relative; a smaller spread is that of fixed-point rounding
 constexpr double kUnseenShare = 0.10;  // of a total
 
-double area_of(const Geometry& geometry, const ClrayPrimitive& primitive, const TableRow& shape) {
-  const double* d = geometry.shapes.data() + primitive.data;
-  if (!shape.faces)
-    return shape_area_of(static_cast<int>(primitive.shape), d + CLRAY_SHAPE_KEYS) * d[CLRAY_SHAPE_SCALE] *
-           d[CLRAY_SHAPE_SCALE];
-  const vec3 cross = v3_cross(v3_sub(v3_load(d + 3), v3_load(d)), v3_sub(v3_load(d + 6), v3_load(d)));
-  return 0.5 * v3_length(cross);
-}
-
 /// Whether the body has normals that no ray may have met: true of curved shapes, and of any face so small that few rays
 /// came to it, in a fine mesh or alone. A flat face has one normal, which its first ray meets. `rays`: for each m² of
 /// the beam.
@@ -60,7 +56,7 @@ bool may_be_unmet(const Geometry& geometry, double rays_per_m2) {
     if (!shapes[static_cast<std::size_t>(row)].flat) return true;
   }
   return std::any_of(geometry.primitives.begin(), geometry.primitives.end(), [&](const ClrayPrimitive& p) {
-    return rays_per_m2 * area_of(geometry, p, shapes[p.shape]) < kRaysPerFacet;
+    return rays_per_m2 * primitive_area(geometry, p) < kRaysPerFacet;
   });
 }
 
@@ -222,7 +218,8 @@ void add_warnings(const Scene& scene, const Ending& ending, const LitRecords& li
   warn_outside_window(result);
   warn_few_replicates(result);
   warn_unseen(result);
-  if (result->target_asked && !result->target_reached) result->warnings.push_back(missed_target(scene, ending));
+  if (result->target_asked && !result->target_reached)
+    result->warnings.push_back(missed_target(scene, ending, result->partial));
 }
 
 }  // namespace clray

@@ -211,6 +211,11 @@ Scene parse_scene(const std::string& text, const std::string& path, const SceneO
   return read_and_finished(text, path, options);
 }
 
+Error placed_in_file(const Error& error, const std::string& path) {
+  if (extension_of(path) != ".toml" || !text::input_file_fault(path).empty()) return error;
+  return placed_in_file(error, text::read_input_file(path), path);
+}
+
 Scene load_scene(const std::string& path, const SceneOptions& options) {
   check_unit_of(options);
   const std::string extension = extension_of(path);

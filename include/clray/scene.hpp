@@ -17,6 +17,7 @@
 
 #include "clray/constants.hpp"
 #include "clray/detector.hpp"
+#include "clray/error.hpp"
 #include "clray/export.hpp"
 #include "clray/trace.hpp"
 
@@ -373,6 +374,11 @@ Scene load_scene(const std::string& path, const SceneOptions& options = {});
 /// The same from the text of a scene file. `path` is where it would stand: messages name it, and files are looked for
 /// beside it.
 Scene parse_scene(const std::string& text, const std::string& path, const SceneOptions& options = {});
+
+/// An error that names a member of a scene ("detectors[0].bins"), as those of trace() and check_scene() do, as one that
+/// names its place in the scene file: file, line and column, or the file alone where it does not speak of the member.
+/// Other errors, and those of scenes that are not from a readable scene file, stay as they are.
+Error placed_in_file(const Error& error, const std::string& path);
 
 /// A mesh in memory, of one material slot: vertices in metres, triangles counter-clockwise seen from outside. Throws
 /// Error(input) for vertices that there are not, or where all is without area.

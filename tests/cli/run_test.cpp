@@ -80,6 +80,30 @@ TEST_CASE("the kernel's source is printed, nothing is traced") {
   CHECK_FALSE(scratch.has("clray-out"));
 }
 
+TEST_CASE("what the body decides of a scene is said with its place in the file, before tracing") {
+  const Scratch scratch;
+  const std::string box = "[[component]]\nshape = \"box\"\nsize = [1, 1, 1]\n[source]\ndirection = [0, 0, 1]\n";
+  const auto said = [&](const std::string& more, const std::vector<std::string>& options = {}) {
+    spit(scratch / "scene.toml", box + more);
+    std::vector<std::string> arguments{"--device", "cpu", "scene.toml"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const auto outcome = clray(scratch, arguments);
+    CHECK(outcome.status == 3);
+    CHECK_FALSE(scratch.has("clray-out"));
+    return outcome.err;
+  };
+  CHECK(contains(said("[[detector]]\nkind = \"delay\"\nstart_ns = 100\n"),
+                 "clray: scene.toml:8:12: detector.start_ns: the delay window is empty"));
+  CHECK(contains(said("[[detector]]\nkind = \"delay\"\nbin_ps = 1e-9\n"),
+                 "clray: scene.toml:8:10: detector.bin_ps: 1e-09 ps makes"));
+  const std::string ball = "[[component]]\nshape = \"cylinder\"\nradius = 1\nheight = 1\n";
+  CHECK(contains(said(ball + "[trace]\nmethod = \"tiles\"\n"),
+                 "clray: scene.toml:11:10: trace.method: method = \"tiles\" is not possible for the detector delay"));
+  // The command line says it, so the file is all there is to name.
+  CHECK(contains(said(ball, {"--method", "tiles"}),
+                 "clray: scene.toml: trace.method: method = \"tiles\" is not possible for the detector delay"));
+}
+
 TEST_CASE("an unknown device is status 4") {
   const Scratch scratch;
   spit(scratch / "square.obj", square());

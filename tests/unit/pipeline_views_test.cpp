@@ -189,7 +189,7 @@ TEST_CASE("bins of an automatic window are judged before anything is traced, wit
   scene.detectors = {{"delay", "camera", {{"bin_ps", 1e-2}}}};
   CHECK(said().empty());
   scene.detectors[0].parameters["bin_ps"] = 1e-3;
-  CHECK(said() == "detector camera: bin_ps = 0.001 makes 1.34e+07 bins, at most 1e7 expected");
+  CHECK(said() == "detectors[0].bin_ps: 0.001 ps makes 1.34e+07 bins, at most 1e7 expected");
   scene.detectors[0].parameters = {{"bin_ps", 1e-3}, {"start_ns", 0.0}, {"stop_ns", 1.0}};
   CHECK(said().empty());
   // 8e6 bins of 500 orientations take 1.7 TB.
@@ -197,5 +197,5 @@ TEST_CASE("bins of an automatic window are judged before anything is traced, wit
   scene.motion = Motion{};
   scene.motion->period_s = scene.motion->stop_s = 1.0;
   scene.motion->step_rad = 0.0126;
-  CHECK(said().find("detector camera: bin_ps: the results need about ") == 0);
+  CHECK(said().find("detectors[0].bin_ps: the results need about ") == 0);
 }

@@ -24,8 +24,8 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 enum { kBins, kLargest, kHits };
 enum { kSettingBins = 0, kSettingFirst = 1, kSettingPerMetre = 2, kSettingBin = 3, kSettingStride = 3 };
 
-[[noreturn]] void refuse(const DetectorSpec& spec, const std::string& what) {
-  throw Error(ErrorCode::input, what, "detector " + spec.name);
+[[noreturn]] void refuse(const RoomContext& x, const char* key, const std::string& what) {
+  throw Error(ErrorCode::input, what, member_of(x.scene, x.spec) + "." + key);
 }
 
 /// Bins, then first edge (m), bins per metre and width (m) of each connection. The automatic window holds all delays of
@@ -43,14 +43,15 @@ std::vector<double> delay_settings(const RoomContext& x) {
     const double first = std::isnan(start_ns) ? low - margin : start_ns * kMetresPerNs;
     const double last = std::isnan(stop_ns) ? high + margin : stop_ns * kMetresPerNs;
     if (!(last > first))
-      refuse(x.spec, fmt::format("the delay window is empty: it starts at {} ns and stops at {} ns",
-                                 first / kMetresPerNs, last / kMetresPerNs));
+      refuse(x, std::isnan(stop_ns) ? "start_ns" : "stop_ns",
+             fmt::format("the delay window is empty: it starts at {:.6g} ns and stops at {:.6g} ns",
+                         first / kMetresPerNs, last / kMetresPerNs));
     double bin = (last - first) / asked_bins;
     if (!std::isnan(bin_ps)) {
       bin = bin_ps * 1e-3 * kMetresPerNs;
       const double count = std::ceil((last - first) / bin);
       if (!(count <= 1e7))
-        refuse(x.spec, fmt::format("bin_ps = {} makes {:.3g} bins, at most 1e7 expected", bin_ps, count));
+        refuse(x, "bin_ps", fmt::format("{} ps makes {:.3g} bins, at most 1e7 expected", bin_ps, count));
       bins = std::max(c == 0 ? 1.0 : bins, count);
     }
     settings.insert(settings.end(), {first, 1.0 / bin, bin});
