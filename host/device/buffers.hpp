@@ -57,6 +57,15 @@ cl::Buffer make_buffer(OpenedDevice& opened, const T* values, std::size_t count,
   return buffer;
 }
 
+/// Elements of the host as a buffer, for a device that shares its memory: they are not copied, and must stay.
+template <class T>
+cl::Buffer buffer_of(OpenedDevice& opened, const T* values, std::size_t count) {
+  return with_cl_errors(opened.info.name, [&] {
+    return cl::Buffer(opened.context, CL_MEM_READ_ONLY | CL_MEM_USE_HOST_PTR, count * sizeof(T),
+                      const_cast<T*>(values));
+  });
+}
+
 /// A buffer that holds a copy of `values`.
 template <class T>
 cl::Buffer make_buffer(OpenedDevice& opened, const std::vector<T>& values, cl_mem_flags flags = CL_MEM_READ_ONLY) {

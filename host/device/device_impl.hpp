@@ -40,6 +40,7 @@ struct Device::Impl {
     cl::Context context;
     cl::CommandQueue queue;                       ///< in order, profiling enabled
     bool int64_atomics = false;                   ///< cl_khr_int64_base_atomics, unless a quirk speaks against it
+    bool shares_memory = false;                   ///< works in the host's memory: nothing needs to be there twice
     bool no_optimiser = false;                    ///< build with -cl-opt-disable
     std::uint64_t most_items = 1u << 26;          ///< work-items of a launch
     std::map<std::string, std::string> defines;   ///< capability defines: from extensions and quirks.def

@@ -235,6 +235,7 @@ OpenedDevice open_device(const FoundDevice& found) {
     opened.device = found.device;
     opened.context = cl::Context(found.device);
     opened.queue = cl::CommandQueue(opened.context, found.device, CL_QUEUE_PROFILING_ENABLE);
+    opened.shares_memory = found.type == CL_DEVICE_TYPE_CPU && found.device.getInfo<CL_DEVICE_HOST_UNIFIED_MEMORY>();
     for (const std::string& define : quirks_of(found.info)) opened.defines[define] = "1";
     opened.defines.erase("CLRAY_HOST_PREFERRED");
     opened.no_optimiser = opened.defines.erase("CLRAY_HOST_NO_OPTIMISER") > 0;

@@ -53,6 +53,17 @@ void FitsFile::check(const char* what) {
 
 void FitsFile::image(const std::string& name, const std::string& unit, const std::vector<FitsAxis>& axes,
                      const std::vector<double>& pixels) {
+  begin_image(name, unit, axes);
+  write_numbers(0, pixels);
+}
+
+void FitsFile::write_numbers(std::size_t first, const std::vector<double>& numbers) {
+  fits_write_img(handle(file_), TDOUBLE, static_cast<LONGLONG>(first) + 1, static_cast<LONGLONG>(numbers.size()),
+                 const_cast<double*>(numbers.data()), &status_);
+  check("write");
+}
+
+void FitsFile::begin_image(const std::string& name, const std::string& unit, const std::vector<FitsAxis>& axes) {
   std::vector<long> lengths;
   for (const auto& axis : axes) lengths.push_back(axis.length);
   fits_create_img(handle(file_), DOUBLE_IMG, static_cast<int>(lengths.size()), lengths.data(), &status_);
@@ -65,9 +76,6 @@ void FitsFile::image(const std::string& name, const std::string& unit, const std
     key(numbered("CRVAL", i), axes[i].reference_value, "value there");
     key(numbered("CDELT", i), axes[i].step, "step of a pixel");
   }
-  fits_write_img(handle(file_), TDOUBLE, 1, static_cast<LONGLONG>(pixels.size()), const_cast<double*>(pixels.data()),
-                 &status_);
-  check("write");
 }
 
 void FitsFile::table(const std::string& name, const std::vector<FitsColumn>& columns) {

@@ -3,6 +3,7 @@
 // papers for the keywords.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -34,6 +35,20 @@ class FitsFile {
   /// The next image; the first is the primary one. `pixels` runs fastest along the first axis.
   void image(const std::string& name, const std::string& unit, const std::vector<FitsAxis>& axes,
              const std::vector<double>& pixels);
+  /// The same of planes whose first row is the topmost: FITS counts rows from the bottom.
+  template <class Number>
+  void image_from_top(const std::string& name, const std::string& unit, const std::vector<FitsAxis>& axes,
+                      const std::vector<Number>& pixels) {
+    begin_image(name, unit, axes);
+    const auto width = static_cast<std::size_t>(axes[0].length), height = static_cast<std::size_t>(axes[1].length);
+    std::vector<double> plane(width * height);
+    for (std::size_t first = 0; first < pixels.size(); first += plane.size()) {
+      for (std::size_t y = 0; y < height; ++y)
+        std::copy_n(pixels.begin() + static_cast<std::ptrdiff_t>(first + (height - 1 - y) * width), width,
+                    plane.begin() + static_cast<std::ptrdiff_t>(y * width));
+      write_numbers(first, plane);
+    }
+  }
   void table(const std::string& name, const std::vector<FitsColumn>& columns);
   void key(const std::string& name, const std::string& value, const std::string& comment);
   void key(const std::string& name, double value, const std::string& comment);
@@ -41,6 +56,9 @@ class FitsFile {
   void close();
 
  private:
+  void begin_image(const std::string& name, const std::string& unit, const std::vector<FitsAxis>& axes);
+  /// Numbers of the image from the `first` on, counted from 0.
+  void write_numbers(std::size_t first, const std::vector<double>& numbers);
   void check(const char* what);
 
   std::string path_;

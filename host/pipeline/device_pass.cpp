@@ -14,15 +14,6 @@ bool of_the_body(const std::string& buffer, const PassPlan& plan) {
   return buffer == "primitives" || buffer == "shapes" || (buffer == "nodes" && plan.beams.nodes.empty());
 }
 
-/// Calls `function` with pieces of a buffer's numbers begin … end - 1 and where each starts, so that memory is reused
-/// and not mapped anew.
-template <class T, class Function>
-void each_piece(OpenedDevice& opened, const cl::Buffer& buffer, const SumRange& range, Function&& function) {
-  constexpr std::size_t kPiece = 1u << 18;
-  for (std::uint64_t first = range.begin; first < range.end; first += kPiece)
-    function(first, read_buffer<T>(opened, buffer, std::min<std::uint64_t>(kPiece, range.end - first), first));
-}
-
 }  // namespace
 
 DevicePass::DevicePass(OpenedDevice& device, const PassPlan& plan, const Geometry& geometry, const KernelFiles& files)
@@ -46,19 +37,25 @@ bool DevicePass::refill(const PassPlan& plan, const Geometry& geometry) {
 template <class T>
 void DevicePass::fill(const char* name, const Numbers<T>& numbers, bool of_the_body) {
   const std::size_t count = std::max<std::size_t>(numbers.count, 1);
+  // Large tables of a plan are read where they stand. No launch follows the plan's end before the next one is filled
+  // in.
+  if (opened_.shares_memory && name == std::string("strata") && numbers.count > 0) {
+    buffers_[name] = {{nullptr, buffer_of(opened_, numbers.data, numbers.count)}, count};
+    return;
+  }
   const auto at = buffers_.find(name);
   const bool fits = at != buffers_.end() && at->second.count >= count;
   if (fits && (numbers.data == nullptr || of_the_body)) return;  // drains leave zeros, and a pass has one body
-  cl::Buffer buffer;
+  Kept made{{}, count};
   if (numbers.data == nullptr && numbers.count > 0) {
-    buffer = make_zero_buffer<T>(opened_, numbers.count);
+    made.numbers = make_zeros<T>(opened_, numbers.count);
   } else if (fits) {
-    queue_write(opened_, at->second.buffer, numbers.data, numbers.count);
+    queue_write(opened_, at->second.numbers.buffer, numbers.data, numbers.count);
     return;
   } else {
-    buffer = make_buffer(opened_, numbers.data, numbers.count);
+    made.numbers.buffer = make_buffer(opened_, numbers.data, numbers.count);
   }
-  buffers_[name] = {buffer, count};
+  buffers_[name] = made;
 }
 
 void DevicePass::fill(const PassPlan& plan, const Geometry& geometry) {
@@ -80,7 +77,7 @@ void DevicePass::fill(const PassPlan& plan, const Geometry& geometry) {
 void DevicePass::bind() {
   first_argument_ = 0;
   with_cl_errors(opened_.info.name, [&] {
-#define CLRAY_BIND(type, name) kernel_.setArg(first_argument_++, buffers_.at(#name).buffer);
+#define CLRAY_BIND(type, name) kernel_.setArg(first_argument_++, buffers_.at(#name).numbers.buffer);
     CLRAY_BUFFERS(CLRAY_BIND)
 #undef CLRAY_BIND
   });
@@ -92,7 +89,7 @@ void DevicePass::make_room(const char* name, std::uint64_t count) {
   if (kept.count >= count) return;  // drains leave zeros
   check_sums_size(opened_, count * sizeof(T) / sizeof(std::int64_t));
   kept = {};  // before there is another
-  kept = {make_zero_buffer<T>(opened_, count), count};
+  kept = {make_zeros<T>(opened_, count), count};
 }
 
 /// Lets the buffers of sums hold those of the views that are asked for, and tells the kernel where they stand: it
@@ -114,34 +111,35 @@ void DevicePass::make_room() {
   make_room<std::int64_t>("sums", values);
   if (has_wide_) make_room<std::int64_t>("wide", values);
   make_room<std::uint32_t>("counts", counts);
-  write_buffer(opened_, buffers_.at("blocks").buffer, blocks);
+  write_buffer(opened_, buffers_.at("blocks").numbers.buffer, blocks);
   bind();
 }
 
-void DevicePass::clear(const PassPlan& plan) {
+void DevicePass::clear() {
   if (!has_room()) return;  // nothing was launched
   for (std::size_t b = 0; b < layout_.blocks.size(); ++b) {
     const SumBlock& block = layout_.blocks[b];
     const SumRange range = range_of(layout_, block, asked_.front(), asked_.back() + 1);
     const std::uint64_t count = range.end - range.begin, first = range.begin + shifts_[b];
     if (block.counts()) {
-      zero_buffer<std::uint32_t>(opened_, buffers_.at("counts").buffer, count, first);
+      clear_zeros<std::uint32_t>(opened_, buffers_.at("counts").numbers, first, count);
     } else {
-      zero_buffer<std::int64_t>(opened_, buffers_.at("sums").buffer, count, first);
-      if (has_wide_) zero_buffer<std::int64_t>(opened_, buffers_.at("wide").buffer, count, first);
+      clear_zeros<std::int64_t>(opened_, buffers_.at("sums").numbers, first, count);
+      if (has_wide_) clear_zeros<std::int64_t>(opened_, buffers_.at("wide").numbers, first, count);
     }
   }
-  zero_buffer<std::int64_t>(opened_, buffers_.at("counters").buffer, CLRAY_COUNTERS * plan.layout.shape.views);
+  const Kept& counters = buffers_.at("counters");
+  clear_zeros<std::int64_t>(opened_, counters.numbers, 0, counters.count);
 }
 
 void DevicePass::set_work(std::uint32_t epoch, const std::vector<std::uint32_t>& views) {
   if (constants_.epoch != epoch) {
     constants_.epoch = epoch;
-    write_buffer(opened_, buffers_.at("pass").buffer, std::vector<ClrayPass>{constants_});
+    write_buffer(opened_, buffers_.at("pass").numbers.buffer, std::vector<ClrayPass>{constants_});
   }
   if (asked_ == views) return;
   asked_ = views;
-  write_buffer(opened_, buffers_.at("asked").buffer, asked_);
+  write_buffer(opened_, buffers_.at("asked").numbers.buffer, asked_);
 }
 
 void DevicePass::launch_items(std::uint64_t first, std::uint32_t items, const PointBlock& block, std::uint32_t group) {
@@ -157,41 +155,43 @@ void DevicePass::launch_items(std::uint64_t first, std::uint32_t items, const Po
   finish(opened_);
 }
 
-void DevicePass::drain(const PassPlan& plan, Sums* sums) {
+void DevicePass::drain(Sums* sums) {
   if (!has_room()) return;  // nothing was launched
   for (std::size_t b = 0; b < layout_.blocks.size(); ++b) {
     const SumBlock& block = layout_.blocks[b];
     const std::uint64_t shift = shifts_[b];
-    SumRange range = range_of(layout_, block, asked_.front(), asked_.back() + 1);
-    range = {range.begin + shift, range.end + shift};
+    const SumRange range = range_of(layout_, block, asked_.front(), asked_.back() + 1);
+    const std::uint64_t first = range.begin + shift, count = range.end - range.begin;
     if (block.counts()) {
       const bool greatest = block.scale == SumScale::greatest;
-      each_piece<std::uint32_t>(opened_, buffers_.at("counts").buffer, range, [&](std::uint64_t at, const auto& more) {
-        const std::uint64_t first = at - shift;
-        for (std::size_t k = 0; k < more.size(); ++k) {
+      const auto add = [&](std::uint64_t at, const std::uint32_t* more, std::size_t n) {
+        for (std::size_t k = 0; k < n; ++k) {
+          const std::uint64_t to = at - shift + k;
           if (!greatest) {
-            sums->counts.add(first + k, more[k]);
-          } else if (more[k] > sums->counts[first + k]) {
-            sums->counts.set(first + k, more[k]);
+            sums->counts.add(to, more[k]);
+          } else if (more[k] > sums->counts[to]) {
+            sums->counts.set(to, more[k]);
           }
         }
-      });
+      };
+      take_zeros<std::uint32_t>(opened_, buffers_.at("counts").numbers, first, count, add);
       continue;
     }
-    const auto add = [&](const char* buffer, std::int64_t unit) {
-      each_piece<std::int64_t>(opened_, buffers_.at(buffer).buffer, range, [&](std::uint64_t at, const auto& more) {
-        for (std::size_t k = 0; k < more.size(); ++k)
-          sums->values.add(at - shift + k, static_cast<Sum>(more[k]) * unit);
-      });
+    const auto take = [&](const char* buffer, std::int64_t unit) {
+      const auto add = [&](std::uint64_t at, const std::int64_t* more, std::size_t n) {
+        for (std::size_t k = 0; k < n; ++k) sums->values.add(at - shift + k, static_cast<Sum>(more[k]) * unit);
+      };
+      take_zeros<std::int64_t>(opened_, buffers_.at(buffer).numbers, first, count, add);
     };
-    add("sums", 1);
-    if (has_wide_) add("wide", 4294967296);
+    take("sums", 1);
+    if (has_wide_) take("wide", 4294967296);
   }
-  const auto events =
-      read_buffer<std::int64_t>(opened_, buffers_.at("counters").buffer, CLRAY_COUNTERS * plan.layout.shape.views);
-  for (std::size_t k = 0; k < events.size(); ++k)
-    sums->events[k / CLRAY_COUNTERS][k % CLRAY_COUNTERS] += static_cast<std::uint64_t>(events[k]);
-  clear(plan);
+  const Kept& counters = buffers_.at("counters");
+  const auto add = [&](std::uint64_t at, const std::int64_t* events, std::size_t n) {
+    for (std::size_t k = 0; k < n; ++k)
+      sums->events[(at + k) / CLRAY_COUNTERS][(at + k) % CLRAY_COUNTERS] += static_cast<std::uint64_t>(events[k]);
+  };
+  take_zeros<std::int64_t>(opened_, counters.numbers, 0, CLRAY_COUNTERS * sums->events.size(), add);
 }
 
 }  // namespace clray

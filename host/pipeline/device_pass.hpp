@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "device/program.hpp"
+#include "device/zeros.hpp"
 #include "pipeline/pass_buffers.hpp"
 #include "pipeline/plan.hpp"
 
@@ -37,16 +38,16 @@ class DevicePass {
   /// sums of the views do not fit into a buffer of the device, Error(device).
   void launch_items(std::uint64_t first, std::uint32_t items, const PointBlock& block, std::uint32_t group);
   /// Adds everything that was summed for the views of set_work() to *sums, and clears it.
-  void drain(const PassPlan& plan, Sums* sums);
+  void drain(Sums* sums);
   /// Sets everything that is summed for these views to zero.
-  void clear(const PassPlan& plan);
+  void clear();
 
   std::uint64_t slice_items = 1;  ///< of the next launch
   std::uint64_t most_items() const { return opened_.most_items; }
 
  private:
   struct Kept {
-    cl::Buffer buffer;
+    Zeros numbers;  // without pages where they are no zeros
     std::size_t count = 0;
   };
   void fill(const PassPlan& plan, const Geometry& geometry);

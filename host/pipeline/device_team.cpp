@@ -88,7 +88,7 @@ void DeviceTeam::set_work(std::uint32_t epoch, const std::vector<std::uint32_t>&
 void DeviceTeam::clear() {
   orphans_.clear();
   for (Member& m : members_) m.undrained.clear();
-  each([&](Member* m) { m->pass->clear(plan_); });
+  each([&](Member* m) { m->pass->clear(); });
 }
 
 bool DeviceTeam::run(WorkSource& work, const PointBlock& block, const std::function<bool(double)>& keep_going) {
@@ -166,7 +166,7 @@ void DeviceTeam::trace(Member* member, const Slice& slice) {
 
 void DeviceTeam::drain(Sums* sums) {
   if (members_.size() == 1) {
-    members_.front().pass->drain(plan_, sums);
+    members_.front().pass->drain(sums);
     return;
   }
   const std::function<bool(double)> always = [](double) { return true; };
@@ -174,7 +174,7 @@ void DeviceTeam::drain(Sums* sums) {
     each([&](Member* m) {
       if (m->undrained.empty()) return;
       Sums own(plan_.layout);  // a device may fail half-way
-      m->pass->drain(plan_, &own);
+      m->pass->drain(&own);
       sums->add(plan_.layout, own);
       m->undrained.clear();
     });

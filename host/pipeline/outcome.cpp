@@ -59,6 +59,11 @@ void RoomResults::note(const ResultKey& key, bool found_light) const {
   lit.note(table("detector")[static_cast<std::size_t>(detector.row)], key, found_light);
 }
 
+void RoomResults::forget(std::uint32_t block, std::size_t v, std::size_t l) const {
+  const SumRange range = read.of_lane(block, v, l);
+  if (spent != nullptr) spent->values.forget(range.begin, range.end);
+}
+
 ResultKey RoomResults::key(std::size_t v, std::size_t l, std::size_t c) const {
   ResultKey k = key(v, l);
   const auto observer = static_cast<std::size_t>(plan.request.observers[c]);
@@ -105,20 +110,21 @@ double picture_error(const PassPlan& plan, const Geometry& geometry, const Sums&
   throw Error(ErrorCode::bug, "no detector of this pass paints", "picture_error");
 }
 
-void add_results(const Scene& scene, const PassPlan& plan, const PassOutcome& outcome, Result* result,
-                 LitRecords* lit) {
+void add_results(const Scene& scene, const PassPlan& plan, PassOutcome* outcome, Result* result, LitRecords* lit) {
   const PassRequest& request = plan.request;
   const std::size_t end = request.first_orientation + request.orientations.size();
   if (result->orientations.size() < end) result->orientations.resize(end);
   std::copy(request.orientations.begin(), request.orientations.end(),
             result->orientations.begin() + static_cast<std::ptrdiff_t>(request.first_orientation));
-  const SumReader read(plan, outcome.sums);
+  const SumReader read(plan, outcome->sums);
+  const bool alone = std::count_if(plan.detectors.begin(), plan.detectors.end(),
+                                   [](const PassDetector& d) { return d.asked && d.index >= 0; }) == 1;
   for (const PassDetector& detector : plan.detectors) {
     if (!detector.asked) continue;
     const auto results = room_of(detector).results != nullptr ? room_of(detector).results : sums_results;
-    results({scene, plan, detector, read, *result, *lit});
+    results({scene, plan, detector, read, *result, *lit, alone ? &outcome->sums : nullptr});
   }
-  add_counters(outcome.sums, result);
+  add_counters(outcome->sums, result);
 }
 
 void order_results(const Scene& scene, Result* result) {

@@ -49,8 +49,8 @@ double picture_error(const PassPlan& plan, const Geometry& geometry, const Sums&
 void largest_error(const std::vector<Target>& targets, double rays, ErrorPoint* point);
 
 /// Appends what the pass found to the result's detectors, energy books and diagnostics, and notes which records are
-/// lit.
-void add_results(const Scene& scene, const PassPlan& plan, const PassOutcome& outcome, Result* result, LitRecords* lit);
+/// lit. Of large sums nothing may be left afterwards.
+void add_results(const Scene& scene, const PassPlan& plan, PassOutcome* outcome, Result* result, LitRecords* lit);
 
 /// Puts the records of all passes in the order of the scene: orientation, variant, band, observer, detector (pictures
 /// and books: detector and observer first).

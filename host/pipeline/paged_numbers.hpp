@@ -8,6 +8,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "device/zero_pages.hpp"
+
 namespace clray {
 
 /// Integers of type Wide, held as Narrow where those are large enough.
@@ -60,12 +62,18 @@ class PagedNumbers {
     return all;
   }
 
+  /// Gives back the pages that lie in begin … end - 1, whose numbers nobody reads any more.
+  void forget(std::size_t begin, std::size_t end) {
+    for (std::size_t p = (begin + kPage - 1) / kPage; p < pages_.size() && std::min((p + 1) * kPage, size_) <= end; ++p)
+      pages_[p] = Page();
+  }
+
  private:
-  static constexpr std::size_t kPage = 4096;
+  static constexpr std::size_t kPage = 16384;
 
   struct Page {
-    std::vector<Narrow> narrow;
-    std::vector<Wide> wide;
+    std::vector<Narrow, PageAllocator<Narrow>> narrow;
+    std::vector<Wide, PageAllocator<Wide>> wide;
   };
 
   std::size_t size_ = 0;

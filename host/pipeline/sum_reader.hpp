@@ -34,6 +34,12 @@ class SumReader {
                       std::uint64_t k) const {
     return sums_.counts[at(plan_.layout.blocks[block], view, lane, c, r) + k];
   }
+  /// Where a block has the numbers of a view and lane, of all its replicates; of blocks whose rows are lanes.
+  SumRange of_lane(std::uint32_t block, std::size_t view, std::size_t lane) const {
+    const SumBlock& b = plan_.layout.blocks[block];
+    const std::uint64_t begin = at(b, view, lane, 0, 0);
+    return {begin, begin + plan_.layout.shape.replicates * b.width};
+  }
   /// Whether a solved first bounce adds to a block.
   bool adds_to(std::uint32_t block) const { return plan_.first && plan_.first->blocks[block] >= 0; }
   /// What the solved first bounce adds to a value in every replicate; 0 where none is solved.

@@ -111,9 +111,9 @@ class Tracer {
       const double left = scene_.trace.time_limit_s > 0.0 ? std::max(1e-6, scene_.trace.time_limit_s - spent_) : 0.0;
       // After an interrupt no other program is built.
       const bool go = k == 0 || !stopped();
-      const PassOutcome outcome = go ? outcome_of(planned.plans[k], geometry, kept_.pass(k), left) : cut();
+      PassOutcome outcome = go ? outcome_of(planned.plans[k], geometry, kept_.pass(k), left) : cut();
       if (!kept_.used_again()) kept_.pass(k)->clear();  // results need memory, too
-      take(planned.plans[k], geometry, outcome);
+      take(planned.plans[k], geometry, &outcome);
     }
   }
 
@@ -183,7 +183,8 @@ class Tracer {
   bool stopped() const { return hooks_.stop != nullptr && hooks_.stop->load(); }
 
   /// Adds what a pass found to the result.
-  void take(const PassPlan& plan, const Geometry& geometry, const PassOutcome& outcome) {
+  void take(const PassPlan& plan, const Geometry& geometry, PassOutcome* found) {
+    const PassOutcome& outcome = *found;
     if (saver_.has_one_of_several()) {
       result_.partial = result_.partial || outcome.partial;
       return;
@@ -213,8 +214,8 @@ class Tracer {
     result_.errors.insert(result_.errors.end(), outcome.errors.begin(), outcome.errors.end());
     add_unique(plan.program.kept, &result_.kept);
     add_unique(plan.program.left_out, &result_.left_out);
-    add_results(scene_, plan, outcome, &result_, &lit_);
     add_unique(doubtful_claims(plan, geometry, outcome.sums), &result_.warnings);
+    add_results(scene_, plan, found, &result_, &lit_);
   }
 
   /// The detectors of a pass, and the variants and bands, where there are several, that it is about.

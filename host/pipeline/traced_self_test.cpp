@@ -131,7 +131,7 @@ void run_traced_self_test(OpenedDevice& opened, const PassPlan& plan, bool speci
   const auto items = static_cast<std::uint32_t>(items_of(built.plan, built.plan.beams.views.size(), kPoints, kChunk));
   device.launch_items(0, items, {0, kPoints, kChunk}, in_packets(plan) ? 1 : 64);
   Sums found(built.plan.layout);
-  device.drain(built.plan, &found);
+  device.drain(&found);
   compare(opened, built.plan, expected, found);
   if (embedded) remember(opened, what);
 }

@@ -107,7 +107,7 @@ class Verifier {
       } else {
         for (const std::uint32_t r : f.replicates) launch(items / replicates * r, items / replicates, block);
       }
-      pass_->drain(plan_, sums);
+      pass_->drain(sums);
     }
   }
 

@@ -5,6 +5,7 @@
 #include <fcntl.h>
 #include <signal.h>
 #include <stdlib.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -47,7 +48,8 @@ inline std::string square() {
 }
 
 struct Outcome {
-  int status = -1;  ///< exit status, or 128 + signal
+  int status = -1;       ///< exit status, or 128 + signal
+  double peak_MB = 0.0;  ///< resident memory at most
   std::string out, err;
 };
 
@@ -82,9 +84,10 @@ class Running {
   }
   Outcome wait() const {
     int status = 0;
-    ::waitpid(child_, &status, 0);
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), slurp(scratch_ / ".out"),
-            slurp(scratch_ / ".err")};
+    rusage used{};
+    ::wait4(child_, &status, 0, &used);
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), 1024e-6 * used.ru_maxrss,
+            slurp(scratch_ / ".out"), slurp(scratch_ / ".err")};
   }
 
  private:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Beside faults.cpp: devices with work-groups of at most CLRAY_FAULT_GROUP work-items, and such that fail. From the
 // launch of this number on (CLRAY_FAULT_LAUNCH, from 1) the device of that launch has failed, and none of its launches,
-// reads and writes succeeds any more.
+// reads, writes and mappings succeeds any more.
 #include <CL/cl.h>
 #include <dlfcn.h>
 #include <stdlib.h>
@@ -61,6 +61,16 @@ cl_int clEnqueueWriteBuffer(cl_command_queue queue, cl_mem buffer, cl_bool block
   if (queue == broken.load()) return CL_OUT_OF_RESOURCES;
   return real<decltype(clEnqueueWriteBuffer)>("clEnqueueWriteBuffer")(queue, buffer, blocking, offset, size, data,
                                                                       count, events, event);
+}
+
+void* clEnqueueMapBuffer(cl_command_queue queue, cl_mem buffer, cl_bool blocking, cl_map_flags flags, size_t offset,
+                         size_t size, cl_uint count, const cl_event* events, cl_event* event, cl_int* status) {
+  if (queue == broken.load()) {
+    if (status != nullptr) *status = CL_OUT_OF_RESOURCES;
+    return nullptr;
+  }
+  return real<decltype(clEnqueueMapBuffer)>("clEnqueueMapBuffer")(queue, buffer, blocking, flags, offset, size, count,
+                                                                  events, event, status);
 }
 }
 #pragma GCC visibility pop

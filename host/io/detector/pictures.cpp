@@ -203,18 +203,6 @@ void write_rgb(Writer& writer, const Group& group) {
   if (!visible) writer.warnings.push_back("the bands hold no visible light: " + stem + ".png shows their mean in grey");
 }
 
-/// The image turned upside down, since FITS counts rows from the bottom.
-std::vector<double> flipped(const std::vector<double>& top_down, std::size_t width, std::size_t height) {
-  std::vector<double> bottom_up(top_down.size());
-  const std::size_t rows = width ? top_down.size() / width : 0;
-  for (std::size_t row = 0; row < rows; ++row) {
-    const std::size_t plane = row / height, y = row % height;
-    std::copy_n(top_down.begin() + static_cast<std::ptrdiff_t>(row * width), width,
-                bottom_up.begin() + static_cast<std::ptrdiff_t>((plane * height + height - 1 - y) * width));
-  }
-  return bottom_up;
-}
-
 /// The axis of bands: their wavelengths if they are evenly spaced, else their numbers (the table BANDS has the rest).
 FitsAxis wavelength_axis(const std::vector<Band>& bands) {
   const auto centre = [&](std::size_t i) { return 0.5 * (bands[i].low_nm + bands[i].high_nm); };
@@ -230,7 +218,6 @@ FitsAxis wavelength_axis(const std::vector<Band>& bands) {
 
 void write_cube(Writer& writer, const Group& group, std::size_t i) {
   const ImageResult& image = *group[i];
-  const std::size_t w = static_cast<std::size_t>(image.width), h = static_cast<std::size_t>(image.height);
   const FitsAxis x{image.width, "X", "m", 0.5 * (image.width + 1), image.centre_right_m, image.pixel_m};
   const FitsAxis y{image.height, "Y", "m", 0.5 * (image.height + 1), image.centre_up_m, image.pixel_m};
   FitsColumn name{"NAME", "", {}, {}}, low{"LOW", "nm", {}, {}}, high{"HIGH", "nm", {}, {}},
@@ -243,7 +230,7 @@ void write_cube(Writer& writer, const Group& group, std::size_t i) {
   }
   FitsFile file(writer.folder.path(writer.add(frame_stem(writer.stem("hyperspectral", image.key), group, i), "fits")));
   const auto wave = wavelength_axis(image.bands);
-  file.image("RADIANCE", "sr-1", {x, y, wave}, flipped(image.radiance_per_sr, w, h));
+  file.image_from_top("RADIANCE", "sr-1", {x, y, wave}, image.radiance_per_sr);
   const auto direction = [&](const char* key, const Vec3& v, const char* comment) {
     const char* const axes[] = {"X", "Y", "Z"};
     for (int c = 0; c < 3; ++c) file.key(std::string(key) + axes[c], v[c], comment);
@@ -257,10 +244,10 @@ void write_cube(Writer& writer, const Group& group, std::size_t i) {
   file.history("seed " + std::to_string(writer.result.seed) + ", digest " + hex16(writer.result.digest));
   file.history("time " + number(time_of(writer.result, image.key)) + " s");
   if (!image.standard_error_per_sr.empty()) {
-    file.image("STANDARD_ERROR", "sr-1", {x, y, wave}, flipped(image.standard_error_per_sr, w, h));
+    file.image_from_top("STANDARD_ERROR", "sr-1", {x, y, wave}, image.standard_error_per_sr);
   }
   if (!image.coverage.empty()) {
-    file.image("COVERAGE", "", {x, y}, flipped({image.coverage.begin(), image.coverage.end()}, w, h));
+    file.image_from_top("COVERAGE", "", {x, y}, image.coverage);
   }
   file.table("BANDS", {name, low, high, source});
   file.close();

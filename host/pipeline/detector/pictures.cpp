@@ -33,6 +33,9 @@ ImageResult new_image(const RoomResults& x, const ResultKey& key, std::size_t v)
   const std::uint32_t block = find_detector(x.plan, "pixels")->first_block + kCovered;
   const double samples = static_cast<double>(x.read.points(v)) * x.plan.request.replicates;
   const std::uint64_t pixels = static_cast<std::uint64_t>(size.width) * size.height;
+  const std::uint64_t bands = bands_of(x.scene, table_row("detector", x.spec().kind)).size();
+  image.radiance_per_sr.reserve(pixels * bands);  // rows that grow are there twice
+  image.standard_error_per_sr.reserve(pixels * bands);
   for (std::uint64_t p = 0; p < pixels; ++p)
     image.coverage.push_back(static_cast<float>(static_cast<double>(x.read.count(block, v, 0, 0, 0, p)) / samples));
   return image;
@@ -49,6 +52,7 @@ void add_band(const RoomResults& x, std::size_t v, std::size_t l, ImageResult* i
     image->radiance_per_sr.push_back(0.5 * (a + b));
     image->standard_error_per_sr.push_back(0.5 * std::fabs(a - b));
   }
+  x.forget(block, v, l);
 }
 
 bool any_light(const ImageResult& image) {

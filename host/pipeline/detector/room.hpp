@@ -53,7 +53,10 @@ struct RoomResults {
   const SumReader& read;
   Result& out;
   LitRecords& lit;
+  Sums* spent = nullptr;  ///< what `read` reads, where no other detector of the scene asks for it
 
+  /// Gives back memory of values that are not read any more: those of a view and lane in a block of lanes.
+  void forget(std::uint32_t block, std::size_t v, std::size_t l) const;
   /// Notes whether a record found light; a record that found none in any orientation is warned of.
   void note(const ResultKey& key, bool found_light) const;
   const DetectorSpec& spec() const { return scene.detectors[static_cast<std::size_t>(detector.index)]; }
