@@ -20,16 +20,16 @@ namespace {
 
 // Seconds on one core, as bodies of 36 to 10^6 faces took (clray-bench method). Their ratios decide.
 constexpr double kSecondsPerFace = 8e-6;                                   // of a view that is solved
-constexpr double kSecondsPerCutFace = 5e-6, kSecondsPerTile = 5e-6;        // of a view in tiles
+constexpr double kSecondsPerCutFace = 4e-6, kSecondsPerTile = 20e-6;       // of a view in tiles
 constexpr double kSecondsPerSeenFace = 8e-6, kSecondsPerSeenTile = 50e-6;  // and of each that is not from the source
 constexpr double kSecondsPerTreeFace = 2e-6;                               // of the tree that rays need
-constexpr double kSecondsPerRay = 0.1e-6, kSecondsPerLevel = 0.06e-6;      // and of each level of that tree
-constexpr double kTilesOfPercent = 1000.0, kRaysOfPercent = 3000.0;        // that reach 1 %
+constexpr double kSecondsPerRay = 0.05e-6, kSecondsPerLevel = 0.03e-6;     // and of each level of that tree
+constexpr double kTilesOfPercent = 1000.0, kRaysOfPercent = 8000.0;        // that reach 1 %
 constexpr double kTilesPower = 1.5, kRaysPower = 0.75;                     // with which errors fall (docs/error.md)
 constexpr double kRandomPower = 0.5;                                       // the same while faces are smaller
 constexpr double kSeenShare = 0.5;                                         // of the faces that look at the observer
 constexpr double kSearchAndConfirm = 3.0;                                  // times as many rays as the answer's
-constexpr double kMuchDearer = 10.0;
+constexpr double kMuchDearer = 20.0;
 
 /// Whether a detector's sums can be made from visible faces. What no sum of its own has reads those of others.
 bool solvable(const TableRow& row) {
