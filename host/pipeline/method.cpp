@@ -20,7 +20,8 @@ namespace {
 
 // Seconds on one core, as bodies of 36 to 10^6 faces took (clray-bench method). Their ratios decide.
 constexpr double kSecondsPerFace = 8e-6;                                   // of a view that is solved
-constexpr double kSecondsPerCutFace = 4e-6, kSecondsPerTile = 20e-6;       // of a view in tiles
+constexpr double kSecondsPerCutFace = 4e-6, kSecondsPerTile = 10e-6;       // of a view in tiles
+constexpr double kSecondsPerTileFace = 1e-9;                               // of each tile, whose lists are longer
 constexpr double kSecondsPerSeenFace = 8e-6, kSecondsPerSeenTile = 50e-6;  // and of each that is not from the source
 constexpr double kSecondsPerTreeFace = 2e-6;                               // of the tree that rays need
 constexpr double kSecondsPerRay = 0.05e-6, kSecondsPerLevel = 0.03e-6;     // and of each level of that tree
@@ -139,7 +140,7 @@ double seconds_of_tiles(const Scene& scene, const Geometry& geometry, std::size_
   const double seen = kSecondsPerSeenFace * faces + kSecondsPerSeenTile * tiles;
   const bool at_source = scene.observers.size() > elsewhere;
   return (seen * static_cast<double>(elsewhere) +
-          (at_source ? kSecondsPerCutFace * faces + kSecondsPerTile * tiles : 0.0)) *
+          (at_source ? kSecondsPerCutFace * faces + (kSecondsPerTile + kSecondsPerTileFace * faces) * tiles : 0.0)) *
          static_cast<double>(views);
 }
 
