@@ -12,6 +12,7 @@
 #define __global
 #define CLRAY_STACK 192
 #define CLRAY_PACKET 0
+#define CLRAY_PLACED 0
 
 inline thread_local std::size_t global_id = 0;
 inline std::size_t get_global_id(int) {

@@ -50,6 +50,7 @@ struct Device::Impl {
     Flag left_out;                                ///< it has failed, and others do its share
     std::set<std::string> passed;                 ///< self-tests that passed in this process
 
+    bool is_cpu() const { return info.type.find("cpu") != std::string::npos; }
     /// Runs a self-test that throws where it fails, unless it passed under this name before.
     template <class Test>
     void test_once(const std::string& name, Test&& test) {

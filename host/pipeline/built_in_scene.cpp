@@ -128,7 +128,7 @@ PassRequest request_of(const ProgramContent& content, const Scene& scene) {
   request.lanes.resize(content.lanes);
   request.pixels = content.pixels;
   request.mirrors = content.mirrors;
-  request.replicates = content.packets ? 16 : 2;
+  request.replicates = content.walk == "packet" ? 16 : 2;
   request.picture = {4, 3, 0};
   for (std::size_t d = 0; d < scene.detectors.size(); ++d) request.detectors.push_back(static_cast<int>(d));
   for (std::size_t o = 0; o < scene.observers.size(); ++o) request.observers.push_back(static_cast<int>(o));
@@ -170,9 +170,9 @@ ProgramContent content_of(const PassPlan& plan, bool specialised) {
   content.hinged = has("CLRAY_INSTANCED");
   content.one_sided = has("CLRAY_ONE_SIDED");
   content.shared_planes = has("CLRAY_PLANES");
-  content.packets = has("CLRAY_PACKET");
   content.curved = has("CLRAY_CURVED");
   content.specialised = specialised;
+  content.walk = table("walk")[static_cast<std::size_t>(options.walk)].name;
   return content;
 }
 
@@ -208,7 +208,7 @@ BuiltInScene built_in_scene(const ProgramContent& content) {
                         : content.strata ? SamplerKind::strata
                                          : SamplerKind::sobol;
   scene.trace.specialise = content.specialised;
-  scene.trace.walk = content.packets ? "packet" : "plain";
+  scene.trace.walk = content.walk;
   BuiltInScene built{build_geometry(scene), {}};
   for (ClrayPrimitive& primitive : built.geometry.primitives) primitive.component %= content.components;
   // Only the first, which may be hinged, is asked for again; their number is that of the sums.

@@ -17,8 +17,8 @@ struct ProgramContent {
   std::uint32_t lanes = 1, connections = 1, components = 1;
   bool pixels = false, mirrors = false, scatter = false, sobol = true, strata = true;
   bool hinged = false, one_sided = false, shared_planes = false;
-  bool packets = false, curved = false;
-  bool specialised = true;
+  bool curved = false, specialised = true;
+  std::string walk = "plain";  ///< scene-file name
 };
 
 /// The content of a plan's program.

@@ -17,6 +17,7 @@
 #include "pipeline/exact_pass.hpp"
 #include "pipeline/saved_sums.hpp"
 #include "pipeline/tiles_runner.hpp"
+#include "scene/tables.hpp"
 
 namespace clray {
 namespace {
@@ -163,7 +164,13 @@ class CrewMember {
   void trace(std::uint64_t number, const CrewTask& task, WorkSource& work) {
     if (!team_) {
       kept_.clear();
-      team_ = std::make_unique<DeviceTeam>(device_, *plan_, geometry_, options_, &kept_);
+      const PassPlan* plan = plan_;
+      if (static_cast<std::uint32_t>(plan->program.options.walk) != task.block.walk) {
+        as_rank_0_ = *plan;
+        set_walk(table("walk").at(task.block.walk).name, &*as_rank_0_);
+        plan = &*as_rank_0_;
+      }
+      team_ = std::make_unique<DeviceTeam>(device_, *plan, geometry_, options_, &kept_);
     }
     team_->set_work(task.step.epoch, task.step.views);
     team_->run(work, task.block, [&](double) { return inbox_.wants(number); });
@@ -196,7 +203,8 @@ class CrewMember {
   const std::vector<const PassPlan*>& passes_;
   const Geometry& geometry_;
   const TraceOptions& options_;
-  const PassPlan* plan_ = nullptr;  // of the pass at work
+  const PassPlan* plan_ = nullptr;     // of the pass at work
+  std::optional<PassPlan> as_rank_0_;  // where its walk is another: ranges of work-items have one meaning
   KeptPass kept_;
   std::unique_ptr<DeviceTeam> team_;
   std::unique_ptr<PointRunner> runner_;

@@ -67,7 +67,8 @@ inline std::string to_bytes(const CrewTask& task) {
   out.number(task.step.from);
   out.number(task.step.points);
   out.numbers(task.step.views);
-  for (const std::uint32_t n : {task.block.first, task.block.count, task.block.chunk}) out.number(n, 4);
+  for (const std::uint32_t n : {task.block.first, task.block.count, task.block.chunk, task.block.walk})
+    out.number(n, 4);
   out.number(task.items);
   return out.bytes();
 }
@@ -81,7 +82,7 @@ inline CrewTask task_of(const std::string& bytes) {
   task.step.from = in.number();
   task.step.points = in.number();
   task.step.views = in.numbers<std::uint32_t>();
-  for (std::uint32_t* n : {&task.block.first, &task.block.count, &task.block.chunk})
+  for (std::uint32_t* n : {&task.block.first, &task.block.count, &task.block.chunk, &task.block.walk})
     *n = static_cast<std::uint32_t>(in.number(4));
   task.items = in.number();
   return task;

@@ -15,9 +15,10 @@
 
 namespace clray {
 
-/// A block of points of every view, replicate and pixel, and how many a work-item takes at most.
+/// A block of points of every view, replicate and pixel, how many a work-item takes at most, and the walk (a row of
+/// walk.def) that says which it takes.
 struct PointBlock {
-  std::uint32_t first = 0, count = 0, chunk = 16;
+  std::uint32_t first = 0, count = 0, chunk = 16, walk = 0;
 };
 
 class DevicePass {

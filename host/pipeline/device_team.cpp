@@ -19,6 +19,14 @@ namespace {
 constexpr double kSliceSeconds = 0.15;  // of a launch: an interrupt waits no longer
 constexpr std::uint64_t kShares = 8;    // of each device in a block, at least: small runs are shared, too
 
+/// Work-items of the first launch. They must be many enough to keep a GPU at work.
+std::uint64_t first_slice(const OpenedDevice& opened, const PassPlan& plan) {
+  if (in_packets(plan)) return 4;
+  return opened.is_cpu()
+             ? 4096
+             : std::clamp<std::uint64_t>(16384 * std::uint64_t{opened.info.compute_units}, 4096, opened.most_items);
+}
+
 }  // namespace
 
 void leave_out(Device::Impl* impl, OpenedDevice* opened, const Error& error) {
@@ -47,7 +55,7 @@ DeviceTeam::DeviceTeam(Device& device, const PassPlan& plan, const Geometry& geo
     std::shared_ptr<DevicePass>& pass = before[static_cast<std::size_t>(&opened - impl_.devices.data())];
     if (pass == nullptr || !pass->refill(plan, geometry)) {
       pass = std::make_shared<DevicePass>(opened, plan, geometry);
-      pass->slice_items = in_packets(plan) ? 4 : 4096;
+      pass->slice_items = first_slice(opened, plan);
     }
     return Member{&opened, pass, {}};
   });

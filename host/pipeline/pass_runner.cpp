@@ -12,8 +12,6 @@ namespace clray {
 namespace {
 
 constexpr std::uint64_t kMostContributions = 1u << 24;  // per accumulator between drains (scales())
-constexpr std::uint32_t kChunk = 16;                    // points of a work-item
-constexpr std::uint32_t kPacketChunk = 256;             // points of each replicate of a work-item with packets
 
 }  // namespace
 
@@ -94,8 +92,8 @@ void PassRunner::drain_into(OpenStep* step, std::uint64_t done) {
 
 bool PassRunner::run_block(const OpenStep& step, std::uint32_t first_point, std::uint32_t points,
                            const std::function<bool(double)>& keep_going) {
-  const std::uint32_t chunk = std::min(in_packets(plan_) ? kPacketChunk : kChunk, points);
-  const PointBlock block{first_point, points, chunk};
+  const std::uint32_t chunk = std::min(chunk_of(plan_), points);
+  const PointBlock block{first_point, points, chunk, static_cast<std::uint32_t>(plan_.program.options.walk)};
   const std::uint64_t items = items_of(plan_, step.views.size(), points, chunk);
   const auto own = [&](WorkSource& work) { return devices_->run(work, block, keep_going); };
   if (shared_.crew == nullptr) {

@@ -72,6 +72,7 @@ struct PathTraits {
 struct Specialised {
   std::string entry = "trace.cl";  ///< the kernel file that it is built from
   ProgramOptions options;
+  bool walk_is_free = false;  ///< the scene leaves it to the devices
   std::vector<std::string> kept, left_out;
 };
 
@@ -123,8 +124,16 @@ bool first_is_exact(const Scene& scene, const PassRequest& request, bool connect
 /// Whether rays of the beam go in packets (kernels/stage/packet.cl): a work-item then has points of all replicates.
 bool in_packets(const PassPlan& plan);
 
-/// Fits programs to the devices: packets need much private memory, so they are for CPUs; the compiler's optimiser is
-/// left out for few rays on CPUs alone, and not where it is known that the program is used again.
+/// Points that a work-item takes, at most. Work-items that run side by side wait for one another on a GPU, so each has
+/// one there.
+std::uint32_t chunk_of(const PassPlan& plan);
+
+/// Lets the rays of a pass go as a row of the walks says. Work-items of another walk may have other points.
+void set_walk(const std::string& walk, PassPlan* plan);
+
+/// Fits programs to the devices: packets need much private memory, so they are for CPUs, and neighbours side by side
+/// are for all others; the compiler's optimiser is left out for few rays on CPUs alone, and not where it is known that
+/// the program is used again.
 void fit_to(Device& device, bool used_again, std::vector<PassPlan>* plans);
 
 /// The detector of this id in a pass, or null.

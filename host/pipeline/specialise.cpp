@@ -24,16 +24,20 @@ constexpr std::uint64_t kManyForOptimiser = 1u << 15;
 constexpr int kRunsWithoutOptimiser = 8;  // of one program in one process
 constexpr const char* kOptimiser = "the compiler's optimiser";
 
-std::string walk_line(const std::string& walk) {
-  return "walk " + walk + ": " + table_row("walk", walk).meaning;
-}
+constexpr const char* kWalk = "walk ";
+constexpr std::uint32_t kChunk = 16;         // points of a work-item
+constexpr std::uint32_t kPacketChunk = 256;  // points of each replicate of a work-item with packets
+constexpr const char* kPackets = "packets of rays: ";
 
-/// Lets rays go as `walk` says. `no_packets`: why they do not go in packets, if they do not.
-void set_walk(const std::string& walk, const std::string& no_packets, Specialised* program) {
+/// Lets rays go as a row of the walks says.
+void set_walk(const std::string& walk, Specialised* program) {
   program->options.walk = table_index("walk", walk);
   program->options.defines["CLRAY_PACKET"] = walk == "packet" ? "1" : "0";
-  program->kept.push_back(walk_line(walk));
-  if (!no_packets.empty()) program->left_out.push_back("packets of rays: " + no_packets);
+  program->options.defines["CLRAY_PLACED"] = walk == "placed" ? "1" : "0";
+  std::vector<std::string>& kept = program->kept;
+  const auto is_walk = [](const std::string& line) { return line.rfind(kWalk, 0) == 0; };
+  kept.erase(std::remove_if(kept.begin(), kept.end(), is_walk), kept.end());
+  kept.push_back(kWalk + walk + ": " + table_row("walk", walk).meaning);
 }
 
 /// Lets the program be compiled for the speed of its rays, or for a start as soon as possible.
@@ -149,9 +153,10 @@ class Specialiser {
   // Which detectors look at which moments, where each kind's detectors begin, and what work-items keep of their sums.
   void detectors() {
     std::map<std::string, std::string> hooks;
-    std::uint64_t kept = 0;
-    for (std::size_t r = 0; r < table("detector").size(); ++r) {
-      const TableRow& row = table("detector")[r];
+    const std::vector<TableRow>& rows = table("detector");
+    std::vector<std::uint64_t> counts(rows.size()), firsts(rows.size());
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      const TableRow& row = rows[r];
       std::uint64_t first = plan_.detectors.size(), count = 0;
       for (std::size_t d = 0; d < plan_.detectors.size(); ++d) {
         if (plan_.detectors[d].row != static_cast<int>(r)) continue;
@@ -163,8 +168,20 @@ class Specialiser {
       define("CLRAY_FIRST_" + row.id, first);
       if (!row.hooks.empty()) out_.options.detectors.push_back(static_cast<int>(r));
       for (const std::string& hook : row.hooks) hooks[hook] += " X(" + row.id + ")";
-      for (std::size_t s = 0; s < row.sums.size(); ++s)
-        keep(row, row.sums[s], plan_.layout.blocks[plan_.detectors[first].first_block + s], count, &kept);
+      counts[r] = count;
+      firsts[r] = first;
+    }
+    // What work-items keep: sums first, then what is the greatest of something (kernels/stage/gather.cl).
+    std::uint64_t kept = 0;
+    for (const bool greatest : {false, true}) {
+      for (std::size_t r = 0; r < rows.size(); ++r) {
+        for (std::size_t s = 0; counts[r] > 0 && s < rows[r].sums.size(); ++s) {
+          const TableSum& sum = rows[r].sums[s];
+          if ((sum.scale == SumScale::greatest) != greatest) continue;
+          keep(rows[r], sum, plan_.layout.blocks[plan_.detectors[firsts[r]].first_block + s], counts[r], &kept);
+        }
+      }
+      if (!greatest) define("CLRAY_KEPT_SUMS", kept);
     }
     define("CLRAY_KEPT", std::max<std::uint64_t>(kept, 1));
     for (const std::string& hook : detector_hooks()) out_.options.defines["CLRAY_HOOK_" + hook + "(X)"] = hooks[hook];
@@ -208,8 +225,9 @@ class Specialiser {
 
   void walk() {
     const std::string &asked = scene_.trace.walk, why = no_packets();
-    const bool alone = asked == "auto" || asked == "packet";
-    set_walk(why.empty() ? "packet" : alone ? "plain" : asked, why, &out_);
+    out_.walk_is_free = asked == "auto" || asked == "packet";
+    if (!why.empty()) out_.left_out.push_back(kPackets + why);
+    set_walk(why.empty() ? "packet" : out_.walk_is_free ? "plain" : asked, &out_);
   }
 
   bool shadows() const {
@@ -293,19 +311,25 @@ bool in_packets(const PassPlan& plan) {
   return packet != plan.program.options.defines.end() && packet->second == "1";
 }
 
+std::uint32_t chunk_of(const PassPlan& plan) {
+  if (in_packets(plan)) return kPacketChunk;
+  return table("walk")[static_cast<std::size_t>(plan.program.options.walk)].name == "placed" ? 1 : kChunk;
+}
+
+void set_walk(const std::string& walk, PassPlan* plan) {
+  set_walk(walk, &plan->program);
+}
+
 void fit_to(Device& device, bool used_again, std::vector<PassPlan>* plans) {
   const std::vector<OpenedDevice>& devices = device.impl().devices;
-  const bool all_cpus = std::all_of(devices.begin(), devices.end(), [](const OpenedDevice& opened) {
-    return opened.info.type.find("cpu") != std::string::npos;
-  });
+  const bool all_cpus =
+      std::all_of(devices.begin(), devices.end(), [](const OpenedDevice& opened) { return opened.is_cpu(); });
   for (PassPlan& plan : *plans) {
-    if (!all_cpus && in_packets(plan)) {
-      std::vector<std::string>& kept = plan.program.kept;
-      kept.erase(std::remove(kept.begin(), kept.end(), walk_line("packet")), kept.end());
-      set_walk("plain", "they are for CPUs", &plan.program);
-    }
-    if (!plan.program.options.optimised && (used_again || !all_cpus || optimiser_pays(device, plan.program)))
-      set_optimised(true, &plan.program);
+    Specialised& program = plan.program;
+    if (!all_cpus && in_packets(plan)) program.left_out.push_back(std::string(kPackets) + "they are for CPUs");
+    if (!all_cpus && program.walk_is_free) set_walk("placed", &program);
+    if (!program.options.optimised && (used_again || !all_cpus || optimiser_pays(device, program)))
+      set_optimised(true, &program);
   }
 }
 

@@ -128,8 +128,9 @@ void run_traced_self_test(OpenedDevice& opened, const PassPlan& plan, bool speci
   built.plan.program = plan.program;
   const Sums expected = trace_on_host(built.plan, built.geometry, kPoints, kChunk);
   DevicePass device(opened, built.plan, built.geometry, files);
-  const auto items = static_cast<std::uint32_t>(items_of(built.plan, built.plan.beams.views.size(), kPoints, kChunk));
-  device.launch_items(0, items, {0, kPoints, kChunk}, in_packets(plan) ? 1 : 64);
+  const std::uint32_t chunk = std::min(kChunk, chunk_of(plan));
+  const auto items = static_cast<std::uint32_t>(items_of(built.plan, built.plan.beams.views.size(), kPoints, chunk));
+  device.launch_items(0, items, {0, kPoints, chunk}, in_packets(plan) ? 1 : 64);
   Sums found(built.plan.layout);
   device.drain(&found);
   compare(opened, built.plan, expected, found);

@@ -171,8 +171,8 @@ Verified verify(const Scene& scene, Device& device, const std::string& file, dou
   std::mt19937_64 random(seed);
   Verified out;
   for (PassPlan& plan : planned.plans) {
-    // Work-items of packets have points of all replicates.
-    if (in_packets(plan)) plan.program.options.defines["CLRAY_PACKET"] = "0";
+    // Its work-items have points of one replicate, and those of a replicate follow one another.
+    if (!plan.request.without_rays()) set_walk("plain", &plan);
     if (plan.first)
       Verifier(device, plan.first->plan, geometry, saver.pass(plan.first->plan), hooks, &out).run(share, random);
     Verifier(device, plan, geometry, saver.pass(plan), hooks, &out).run(share, random);

@@ -103,7 +103,7 @@ static void trace_packets(const Buffers* g, u32 view, u32 first_point, u32 point
       path.known = dense;
       path.hidden = dense ? hidden[k] : 0u;
       sampler[r].index = start->index;
-      follow_path(&own, &sampler[r], &tally[r], &path, packet.ray[k], (hits >> k) & 1u, &met[k]);
+      follow_path(&own, &sampler[r], &tally[r], &path, packet.ray[k], 1u, (hits >> k) & 1u, &met[k]);
     }
   }
   for (u32 r = 0; r < replicates; ++r) tally_flush(&own, &tally[r]);

@@ -71,7 +71,9 @@ std::vector<ProgramContent> rows() {
     }
   }
   all.push_back(simple("mesh", "lambert", "delay"));
-  all.back().packets = true;
+  all.back().walk = "packet";
+  all.push_back(simple("mesh", "lambert", "delay"));
+  all.back().walk = "placed";
   return all;
 }
 
@@ -87,14 +89,15 @@ class Draw {
     c.connections = one_in(2) ? 2 : 1;
     c.components = 1 + random_() % 4;
     for (bool* flag : {&c.scatter, &c.one_sided, &c.shared_planes, &c.specialised}) *flag = one_in(2);
-    c.packets = one_in(4);
-    c.hinged = !c.packets && one_in(2);
+    const bool packets = one_in(4);
+    if (packets || one_in(3)) c.walk = packets ? "packet" : "placed";
+    c.hinged = !packets && one_in(2);
     c.curved = one_in(4);
-    if (!c.packets) {
+    if (!packets) {
       c.sobol = !one_in(4);
       c.strata = c.sobol && !one_in(4);
     }
-    if (!c.packets && one_in(4)) make_picture(&c, kPictures[random_() % kPictures.size()], one_in(2));
+    if (!packets && one_in(4)) make_picture(&c, kPictures[random_() % kPictures.size()], one_in(2));
     return c;
   }
 

@@ -126,17 +126,19 @@ TEST_CASE("programs of every kind pass") {
   contents.push_back(everything());
   contents.back().detectors = {"delay", "pressure", "delay"};
   contents.back().specialised = false;
-  contents.push_back(simple("mesh", "lambert"));
-  contents.back().packets = true;
-  contents.push_back(everything());
-  contents.back().hinged = false;
-  contents.back().packets = true;
+  for (const char* walk : {"packet", "placed"}) {
+    contents.push_back(simple("mesh", "lambert"));
+    contents.back().walk = walk;
+    contents.push_back(everything());
+    contents.back().hinged = false;
+    contents.back().walk = walk;
+  }
   contents.push_back(everything());
   contents.back().curved = true;
   for (const ProgramContent& content : contents) {
     OpenedDevice opened = opened_cpu();
     const BuiltInScene built = built_in_scene(content);
-    CHECK(in_packets(built.plan) == content.packets);
+    CHECK(in_packets(built.plan) == (content.walk == "packet"));
     CHECK_NOTHROW(run_traced_self_test(opened, plan_of(content), content.specialised, KernelFiles(embedded_kernels())));
   }
 }
@@ -145,7 +147,7 @@ TEST_CASE("a program that traces wrongly is refused") {
   const ProgramContent mesh = simple("mesh", "lambert"), sphere = simple("sphere", "lambert");
   // Compilers that cut a loop, count bits wrongly, place shapes wrongly.
   check_refused(mesh, "walk/plain.cl", "k < 4", "k < 3");
-  check_refused(mesh, "trace.cl", "clz(chunks)", "(clz(chunks) + 1u)");
+  check_refused(mesh, "trace.cl", "clz(parts)", "(clz(parts) + 1u)");
   check_refused(sphere, "stage/intersect.cl", "v3_sub(point, v3_load(data + CLRAY_SHAPE_ORIGIN))", "point");
   // And elsewhere: ties, boxes, samples, surfaces, lanes, sums.
   // And elsewhere: surfaces, sums, strata, lanes, hinges.
@@ -164,12 +166,17 @@ TEST_CASE("a program that traces wrongly is refused") {
   curved.curved = true;
   check_refused(curved, "stage/shade.cl", "primitive & 31u", "(primitive ^ 1u) & 31u");
   ProgramContent packets = mesh;
-  packets.packets = true;
+  packets.walk = "packet";
   check_refused(packets, "stage/packet.cl", "const double4 edge = x1 * y2 - y1 * x2",
                 "const double4 edge = x1 * y2 + y1 * x2");
   check_refused(packets, "stage/packet.cl", "hit->weights = v3(us[k], vs[k], ws[k])",
                 "hit->weights = v3(us[k], ws[k], vs[k])");
   check_refused(packets, "stage/packet_points.cl", "even_bits(part >> 1)", "even_bits(part)");
+  ProgramContent placed = mesh;
+  placed.walk = "placed";
+  check_refused(placed, "math/sobol_place.cl", "v = a == b ? even : odd", "v = even");
+  check_refused(placed, "stage/gather.cl", "(i64)all->greatest[CLRAY_KEPT * r + k]", "(i64)all->greatest[k]");
+  check_refused(placed, "stage/gather.cl", "tally.escaped = all->events[1]", "tally.escaped = all->events[2]");
   packets.connections = 2;
   check_refused(packets, "stage/packet.cl", "least - packet_along(p, o)", "0.5");
   check_refused(packets, "stage/packet_item.cl", "of[p.rays++] = k", "of[p.rays++] = p.rays");
