@@ -15,12 +15,12 @@
 #include <thread>
 
 #include "body/bvh_split.hpp"
+#include "body/in_parts.hpp"
 
 namespace clray {
 namespace {
 
-constexpr std::uint32_t kOwnTask = 8192;          // boxes of a range that is a task of its own
-constexpr std::size_t kPerThread = 2 * kOwnTask;  // boxes below which another thread costs more than it brings
+constexpr std::uint32_t kOwnTask = 8192;  // boxes of a range that is a task of its own
 
 /// The next float toward minus infinity, of numbers in [-4, 4].
 float next_below(float x) {
@@ -47,22 +47,10 @@ struct Chunk {
   std::unique_ptr<Chunk> child[4];
 };
 
-/// Calls function(first, end) with parts of [0, count), one on each thread.
-template <class Function>
-void in_parts(std::size_t count, unsigned threads, const Function& function) {
-  std::vector<std::thread> others;
-  const auto from = [&](unsigned k) { return count * k / threads; };
-  for (unsigned k = 1; k < threads; ++k) others.emplace_back([&, k] { function(from(k), from(k + 1)); });
-  function(0, from(1));
-  for (std::thread& thread : others) thread.join();
-}
-
 class Builder {
  public:
   Builder(std::size_t count, const std::function<Box(std::size_t)>& box_of, unsigned threads) : refs_(count) {
-    const std::size_t most = count / kPerThread + 1;
-    if (threads == 0) threads = std::max(1u, std::thread::hardware_concurrency());
-    threads_ = static_cast<unsigned>(std::min<std::size_t>(threads, most));
+    threads_ = threads_for(count, threads);
     Box all;
     in_parts(count, threads_, [&](std::size_t first, std::size_t end) {
       Box own;

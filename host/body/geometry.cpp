@@ -7,6 +7,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "body/in_parts.hpp"
 #include "body/mesh_convexity.hpp"
 #include "body/portable_tables.hpp"
 #include "body/raw_primitives.hpp"
@@ -96,6 +97,7 @@ class Packer {
     raw.part = g_.part_of_component[index];
     std::vector<std::uint8_t> used(points.size(), 0);
     numbers_.reserve(numbers_.size() + 9 * mesh.triangles.size());
+    raw_.reserve(raw_.size() + mesh.triangles.size());
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
       std::array<std::uint32_t, 3> v = mesh.triangles[t];
       const int first = points[v[0]] <= points[v[1]] ? (points[v[0]] <= points[v[2]] ? 0 : 2)
@@ -169,29 +171,32 @@ class Packer {
     std::vector<Key> keys(raw_.size());
     for (std::uint32_t i = 0; i < raw_.size(); ++i) keys[i] = {numbers_[raw_[i].data], i};
     const std::vector<std::uint32_t> material_rank = material_ranks(scene_);
-    std::sort(keys.begin(), keys.end(), [&](const Key& x, const Key& y) {
+    sort_in_parts(&keys, [&](const Key& x, const Key& y) {
       if (x.first != y.first) return x.first < y.first;
       const RawPrimitive &a = raw_[x.index], &b = raw_[y.index];
       if (const int order = compare(a, b)) return order < 0;
       if (a.material != b.material) return material_rank[a.material] < material_rank[b.material];
-      return a.component < b.component;
+      if (a.component != b.component) return a.component < b.component;
+      return x.index < y.index;
     });
-    std::vector<RawPrimitive> sorted;
-    sorted.reserve(raw_.size());
+    std::vector<std::uint32_t> order;
+    order.reserve(keys.size());
     for (const Key& key : keys) {
       const RawPrimitive& raw = raw_[key.index];
-      if (sorted.empty() || sorted.back().material != raw.material || compare(sorted.back(), raw) != 0)
-        sorted.push_back(raw);
+      if (order.empty() || raw_[order.back()].material != raw.material || compare(raw_[order.back()], raw) != 0)
+        order.push_back(key.index);
+    }
+    keys = {};
+    numbers_ = in_order(std::move(numbers_), raw_, order);
+    std::vector<RawPrimitive> sorted;
+    sorted.reserve(order.size());
+    std::uint32_t end = 0;
+    for (const std::uint32_t k : order) {
+      sorted.push_back(raw_[k]);
+      sorted.back().data = end;
+      end += raw_[k].size;
     }
     raw_ = std::move(sorted);
-    std::vector<double> numbers;
-    numbers.reserve(numbers_.size());
-    for (RawPrimitive& raw : raw_) {
-      const auto first = numbers_.begin() + raw.data;
-      raw.data = static_cast<std::uint32_t>(numbers.size());
-      numbers.insert(numbers.end(), first, first + raw.size);
-    }
-    numbers_ = std::move(numbers);
   }
 
   void share_planes() {
@@ -233,7 +238,8 @@ class Packer {
     const std::vector<TableRow>& rows = table("shape");
     std::vector<bool> used(rows.size(), false);
     g_.primitives.reserve(raw_.size());
-    g_.shapes.reserve(numbers_.size() + planes_.size());
+    std::vector<std::uint32_t> order;  // of all primitives
+    order.reserve(raw_.size());
     for (std::uint32_t p = 0; p < g_.parts.size(); ++p) {
       std::vector<std::uint32_t> members;
       for (std::uint32_t i = 0; i < raw_.size(); ++i) {
@@ -244,6 +250,7 @@ class Packer {
       if (members.empty()) continue;
       if (!g_.trees) {
         for (const std::uint32_t member : members) append(raw_[member], member, rows[raw_[member].shape].faces, used);
+        order.insert(order.end(), members.begin(), members.end());
         continue;
       }
       LinearBvh tree = build_bvh(members.size(), [&](std::size_t i) { return box_of(raw_[members[i]]); });
@@ -253,9 +260,11 @@ class Packer {
       for (const std::uint32_t position : tree.order) {
         const std::uint32_t member = members[position];
         append(raw_[member], member, rows[raw_[member].shape].faces, used);
+        order.push_back(member);
       }
       append_tree(std::move(tree), static_cast<std::uint32_t>(g_.primitives.size() - members.size()), &g_.nodes);
     }
+    g_.shapes = in_order(std::move(numbers_), raw_, order);
     append_planes();
     for (std::size_t row = 0; row < used.size(); ++row) {
       if (used[row]) g_.shape_rows.push_back(static_cast<int>(row));
@@ -265,7 +274,8 @@ class Packer {
   void append(const RawPrimitive& raw, std::uint32_t id, bool face, std::vector<bool>& used) {
     ClrayPrimitive primitive{};
     primitive.shape = raw.shape;
-    primitive.data = static_cast<std::uint32_t>(g_.shapes.size());
+    primitive.data = placed_;
+    placed_ += raw.size;
     primitive.material = raw.material;
     primitive.id = id;
     primitive.component = raw.component;
@@ -278,7 +288,6 @@ class Packer {
       g_.parts[raw.part].shapes.push_back(primitive.data);
       g_.parts[raw.part].shape_rows.push_back(static_cast<int>(raw.shape));
     }
-    g_.shapes.insert(g_.shapes.end(), d, d + raw.size);
     primitive.planes = raw.planes;
     g_.primitives.push_back(primitive);
     used[raw.shape] = true;
@@ -327,6 +336,7 @@ class Packer {
   std::vector<RawPrimitive> raw_;
   std::vector<double> numbers_;
   std::vector<double> planes_;
+  std::uint32_t placed_ = 0;  // numbers of the primitives that have their places
 };
 
 }  // namespace

@@ -2,7 +2,9 @@
 // See raw_primitives.hpp.
 #include "body/raw_primitives.hpp"
 
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include "body/portable_tables.hpp"
 #include "shared/elementary.h"
@@ -70,6 +72,60 @@ class Faces : public FaceSource {
 
 std::uint32_t parts_of(const RawPrimitive& raw) {
   return raw.size == kTriangleSize ? 1u : kMostShapeParts;
+}
+
+namespace {
+
+/// Whether all are triangles whose numbers follow one another.
+bool are_triangles(const std::vector<RawPrimitive>& raw) {
+  for (std::size_t k = 0; k < raw.size(); ++k) {
+    if (raw[k].size != kTriangleSize || raw[k].data != kTriangleSize * k) return false;
+  }
+  return true;
+}
+
+/// Of a permutation, where each triangle of the new order stood.
+std::vector<std::uint32_t> permutation(std::vector<std::uint32_t> order, std::size_t count) {
+  if (order.size() == count) return order;
+  std::vector<bool> taken(count, false);
+  for (const std::uint32_t k : order) taken[k] = true;
+  for (std::uint32_t k = 0; k < count; ++k) {
+    if (!taken[k]) order.push_back(k);
+  }
+  return order;
+}
+
+}  // namespace
+
+std::vector<double> in_order(std::vector<double> numbers, const std::vector<RawPrimitive>& raw,
+                             const std::vector<std::uint32_t>& order) {
+  if (!are_triangles(raw)) {
+    std::vector<double> moved;
+    moved.reserve(numbers.size());
+    for (const std::uint32_t k : order) {
+      const auto first = numbers.begin() + raw[k].data;
+      moved.insert(moved.end(), first, first + raw[k].size);
+    }
+    return moved;
+  }
+  // In place, cycle by cycle: a second copy of many triangles would be the most memory that a scene takes.
+  using Triangle = std::array<double, kTriangleSize>;
+  auto* triangles = reinterpret_cast<Triangle*>(numbers.data());
+  const std::vector<std::uint32_t> from = permutation(order, raw.size());
+  std::vector<bool> done(from.size(), false);
+  for (std::uint32_t k = 0; k < from.size(); ++k) {
+    if (done[k]) continue;
+    const Triangle held = triangles[k];
+    std::uint32_t to = k;
+    for (; from[to] != k; to = from[to]) {
+      triangles[to] = triangles[from[to]];
+      done[to] = true;
+    }
+    triangles[to] = held;
+    done[to] = true;
+  }
+  numbers.resize(kTriangleSize * order.size());
+  return numbers;
 }
 
 SharedPlanes shared_planes_of(const std::vector<RawPrimitive>& primitives, const std::vector<double>& numbers) {

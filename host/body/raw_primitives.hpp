@@ -21,6 +21,10 @@ struct RawPrimitive {
 /// Parts that a primitive's list of planes has room for.
 std::uint32_t parts_of(const RawPrimitive& raw);
 
+/// The numbers of primitives in another order: those of raw[order[0]] first. Some may be left out.
+std::vector<double> in_order(std::vector<double> numbers, const std::vector<RawPrimitive>& raw,
+                             const std::vector<std::uint32_t>& order);
+
 /// Faces of primitives in canonical order that overlap in one plane.
 SharedPlanes shared_planes_of(const std::vector<RawPrimitive>& primitives, const std::vector<double>& numbers);
 

@@ -8,6 +8,8 @@
 #include <numeric>
 #include <utility>
 
+#include "body/in_parts.hpp"
+
 namespace clray {
 namespace {
 
@@ -97,20 +99,27 @@ class Finder {
   };
 
   void sort_planes() {
-    planes_.reserve(faces_.size());
-    keys_.reserve(faces_.size());
+    planes_.resize(faces_.size());
+    keys_.resize(faces_.size());
+    const unsigned threads = threads_for(faces_.size());
+    in_parts(faces_.size(), threads, [&](std::size_t first, std::size_t end) {
+      FaceOutline outline;
+      for (std::size_t f = first; f < end; ++f) {
+        source_.outline(faces_[f], &outline);
+        planes_[f] = plane_of(outline);
+      }
+    });
     double size = 0.0;
-    for (const FlatFace& face : faces_) {
-      source_.outline(face, &first_);
-      planes_.push_back(plane_of(first_));
-      size = std::max(size, planes_.back().size);
-    }
-    for (std::uint32_t f = 0; f < faces_.size(); ++f) {
-      const double* n = planes_[f].normal.data();
-      const double offset = kGeneric[3] * planes_[f].offset / std::max(size, 1e-300);
-      keys_.push_back({kGeneric[0] * n[0] + kGeneric[1] * n[1] + kGeneric[2] * n[2] + offset, faces_[f].frame, f});
-    }
-    std::sort(keys_.begin(), keys_.end(), [](const Key& a, const Key& b) {
+    for (const Plane& plane : planes_) size = std::max(size, plane.size);
+    in_parts(faces_.size(), threads, [&](std::size_t first, std::size_t end) {
+      for (std::size_t f = first; f < end; ++f) {
+        const double* n = planes_[f].normal.data();
+        const double offset = kGeneric[3] * planes_[f].offset / std::max(size, 1e-300);
+        keys_[f] = {kGeneric[0] * n[0] + kGeneric[1] * n[1] + kGeneric[2] * n[2] + offset, faces_[f].frame,
+                    static_cast<std::uint32_t>(f)};
+      }
+    });
+    sort_in_parts(&keys_, [](const Key& a, const Key& b) {
       if (a.frame != b.frame) return a.frame < b.frame;
       return a.value != b.value ? a.value < b.value : a.face < b.face;
     });

@@ -50,6 +50,7 @@ class DevicePass {
   struct Kept {
     Zeros numbers;  // without pages where they are no zeros
     std::size_t count = 0;
+    bool of_the_host = false;  // its memory: never written to
   };
   void fill(const PassPlan& plan, const Geometry& geometry);
   template <class T>
