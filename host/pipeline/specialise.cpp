@@ -225,9 +225,10 @@ class Specialiser {
 
   void walk() {
     const std::string &asked = scene_.trace.walk, why = no_packets();
-    out_.walk_is_free = asked == "auto" || asked == "packet";
+    const bool alone = asked == "auto" || asked == "packet";
+    out_.walk_is_free = alone && scene_.trace.sampler != SamplerKind::random;  // which have no neighbours
     if (!why.empty()) out_.left_out.push_back(kPackets + why);
-    set_walk(why.empty() ? "packet" : out_.walk_is_free ? "plain" : asked, &out_);
+    set_walk(why.empty() ? "packet" : alone ? "plain" : asked, &out_);
   }
 
   bool shadows() const {

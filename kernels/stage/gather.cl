@@ -2,14 +2,14 @@
 // What the work-items of a group kept is added up in local memory, and handed over once for each replicate: on a GPU
 // many items would add to the same few numbers. Sums are integers, so nobody can tell. Items side by side have
 // different replicates (CLRAY_PLACED). Kept numbers below CLRAY_KEPT_SUMS are sums, those after them the greatest of
-// what was seen, as numbers of 32 bits.
+// what was seen, as numbers of 32 bits. What is kept of a pixel is few items' own.
 #ifndef CLRAY_GATHER_CL
 #define CLRAY_GATHER_CL
 
 #define CLRAY_GATHER 0
 #if CLRAY_PLACED
 #ifndef CLRAY_NO_INT64_ATOMICS
-#if CLRAY_KEPT <= 64
+#if CLRAY_KEPT <= 64 && !CLRAY_PIXELS
 #undef CLRAY_GATHER
 #define CLRAY_GATHER 1
 #endif
@@ -32,8 +32,7 @@ typedef struct Gathered {
 /// The view that all items first … end - 1 belong to, if its replicates have room; or CLRAY_NO_VIEW.
 static u32 gather_view(const Buffers* g, const __global u32* asked, u64 first, u64 end, u32 parts) {
   const u32 replicates = g->pass->replicates;
-  const u64 pixels = CLRAY_PIXELS ? (u64)g->pass->width * g->pass->height : (u64)1;
-  const u64 of_a_view = max(pixels * replicates * parts, (u64)1);
+  const u64 of_a_view = max((u64)replicates * parts, (u64)1);
   if (replicates > CLRAY_GATHER_REPLICATES || end <= first) return CLRAY_NO_VIEW;
   return first / of_a_view == (end - 1u) / of_a_view ? asked[first / of_a_view] : CLRAY_NO_VIEW;
 }

@@ -94,6 +94,15 @@ TEST_CASE("packets give the digests of rays alone: shared planes, shapes, bounce
   check_same("shadows", bounces);
 }
 
+TEST_CASE("pictures have one digest under every walk") {
+  Scene scene = seen(scene_of(sphere_mesh(24, 12, 1.0), lambert(0.5)), toward(0.7, 0.4), 16);
+  scene.detectors = {{"rgb", "", {{"width", 30}, {"height", 20}}}};
+  check_same("one bounce", scene);
+  scene.trace.max_bounces = 3;
+  add(scene, moved(plate_mesh(3, 1), {0, 0, 1.1}), lambert(0.4));
+  check_same("three bounces", scene);
+}
+
 TEST_CASE("shadow rays in packets give the digests of rays alone: soups, any size and place, several observers") {
   const clray::Vec3 from = toward(0.6, -1.0), along_x = {1, 0, 0};
   const auto aside = [](Scene scene, clray::Vec3 light, clray::Vec3 observer, int log2_rays) {

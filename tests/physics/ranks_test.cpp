@@ -172,12 +172,12 @@ TEST_CASE("a rank that fails after any number of messages is left out, and the d
 
 TEST_CASE("ranks that would walk otherwise, such as CPUs and GPUs, take the walk of rank 0") {
   clray::Scene scene = cases().front().scene;
-  for (const auto& [first, others] : {std::pair("packet", "plain"), std::pair("plain", "packet"),
-                                      std::pair("placed", "packet"), std::pair("packet", "placed")}) {
-    CAPTURE(first);
-    scene.trace.walk = others;
+  for (const auto& walks : {std::pair("packet", "plain"), std::pair("plain", "packet"), std::pair("placed", "packet"),
+                            std::pair("packet", "placed")}) {
+    CAPTURE(walks.first);
+    scene.trace.walk = walks.second;
     const clray::Scene helper = scene;
-    scene.trace.walk = first;
+    scene.trace.walk = walks.first;
     const Shared all = shared(scene, 2, 1 << 30, {}, {}, &helper);
     check_same(all.result, run(scene));
     CHECK_FALSE(says(all.result, "left out"));

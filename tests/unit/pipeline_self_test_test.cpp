@@ -133,6 +133,9 @@ TEST_CASE("programs of every kind pass") {
     contents.back().hinged = false;
     contents.back().walk = walk;
   }
+  contents.push_back(simple("box", "mirror", "rgb"));
+  contents.back().pixels = contents.back().scatter = true;
+  contents.back().walk = "placed";
   contents.push_back(everything());
   contents.back().curved = true;
   for (const ProgramContent& content : contents) {
