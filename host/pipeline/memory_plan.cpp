@@ -17,6 +17,7 @@ namespace {
 
 constexpr double kProgram = 300e6;  // the program, drivers and their compilers
 constexpr double kOfNumber = 40.0;  // bytes of a number of the results, while files are written
+constexpr double kOfFace = 250.0;   // bytes of a face, most of them while its place in the tree is found
 constexpr double kLeastSlab = 4e6;  // below which devices would have too little to do
 constexpr double kMegabyte = 1e6;
 
@@ -29,9 +30,10 @@ bool is_wide(const PassPlan& plan) {
   return found != plan.program.options.defines.end() && found->second == "1";
 }
 
-/// What a device is given to read.
-double tables_bytes(const PassPlan& plan, const Geometry& geometry) {
-  const PassBuffers in(plan, geometry);
+/// What a device is given to read. One that works in the host's memory reads the body and strata where they stand.
+double tables_bytes(const PassPlan& plan, const Geometry& geometry, bool shared) {
+  PassBuffers in(plan, geometry);
+  if (shared) in.primitives.count = in.shapes.count = in.nodes.count = in.strata.count = 0;
   double bytes = 0.0;
 #define CLRAY_ADD(type, name) \
   if (in.name.data != nullptr) bytes += static_cast<double>(in.name.count * sizeof(*in.name.data));
@@ -60,7 +62,7 @@ double MemoryPlan::host() const {
 }
 
 MemoryPlan memory_plan(const Scene& scene, const Geometry& geometry, const std::vector<PassPlan>& plans,
-                       double slab_bytes) {
+                       double slab_bytes, bool shared) {
   MemoryPlan all;
   double sums = 0.0, file = 0.0, strata = 0.0, results = 0.0;
   for (const PassPlan* plan : passes_of(plans)) {
@@ -71,17 +73,13 @@ MemoryPlan memory_plan(const Scene& scene, const Geometry& geometry, const std::
     file = std::max(file, own);
     strata += static_cast<double>(plan->beams.strata.size() * sizeof(ClrayStratum));
     results += kOfNumber * static_cast<double>(plan->layout.values + plan->layout.counts) / plan->request.replicates;
-    const double device = tables_bytes(*plan, geometry) + on_device * (is_wide(*plan) ? 2.0 : 1.0);
+    const double device = tables_bytes(*plan, geometry, shared) + on_device * (is_wide(*plan) ? 2.0 : 1.0);
     all.device = std::max(all.device, device);
   }
   const bool searches = scene.trace.rays == 0 && scene.trace.method != Method::exact;
-  all.of_host = {{"the program", kProgram},
-                 {"the body", static_cast<double>(geometry.primitives.size() * sizeof(geometry.primitives.front()) +
-                                                  geometry.nodes.size() * sizeof(geometry.nodes.front()))},
-                 {"strata", strata},
-                 {"sums", sums + (searches ? file : 0.0)},
-                 {"files of sums", file},
-                 {"results", results}};
+  all.of_host = {{"the program", kProgram}, {"the body", kOfFace * static_cast<double>(geometry.primitives.size())},
+                 {"strata", strata},        {"sums", sums + (searches ? file : 0.0)},
+                 {"files of sums", file},   {"results", results}};
   return all;
 }
 
@@ -97,15 +95,14 @@ void fit_memory(Device& device, const Scene& scene, const Geometry& geometry, st
   double slab = impl.slab_bytes;
   const auto limit = static_cast<double>(impl.memory_bytes);
   if (limit > 0.0) {
-    // A CPU's kernels work in the memory of the host.
-    const bool together = impl.devices.front().info.type != "gpu";
+    const bool together = impl.devices.front().info.type != "gpu", shared = impl.devices.front().shares_memory;
     const auto over = [&] {
-      const MemoryPlan plan = memory_plan(scene, geometry, *plans, slab);
+      const MemoryPlan plan = memory_plan(scene, geometry, *plans, slab, shared);
       return std::max(plan.device, plan.host() + (together ? plan.device : 0.0)) > limit;
     };
     while (over() && slab > kLeastSlab) slab /= 2.0;
     if (over()) {
-      const MemoryPlan plan = memory_plan(scene, geometry, *plans, slab);
+      const MemoryPlan plan = memory_plan(scene, geometry, *plans, slab, shared);
       const auto largest = std::max_element(plan.of_host.begin(), plan.of_host.end(),
                                             [](const auto& a, const auto& b) { return a.second < b.second; });
       std::string parts = fmt::format("{} on the device", shown(plan.device));

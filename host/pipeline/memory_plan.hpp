@@ -22,10 +22,10 @@ struct MemoryPlan {
   double host() const;
 };
 
-/// What passes take while `slab_bytes` of the sums of views are on a device, about. An upper bound: sums of which most
-/// are zero take less.
+/// What passes take while `slab_bytes` of the sums of views are on a device, about. `shared`: the device works in the
+/// memory of the host. An upper bound: sums of which most are zero take less.
 MemoryPlan memory_plan(const Scene& scene, const Geometry& geometry, const std::vector<PassPlan>& plans,
-                       double slab_bytes);
+                       double slab_bytes, bool shared);
 
 /// How many views of a pass a device is to hold at once.
 std::size_t views_of_slab(const PassPlan& plan, double slab_bytes);

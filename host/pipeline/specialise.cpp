@@ -226,7 +226,8 @@ class Specialiser {
   void walk() {
     const std::string &asked = scene_.trace.walk, why = no_packets();
     const bool alone = asked == "auto" || asked == "packet";
-    out_.walk_is_free = alone && scene_.trace.sampler != SamplerKind::random;  // which have no neighbours
+    // Random points have no neighbours, and those of a pixel have nowhere else to be.
+    out_.walk_is_free = alone && scene_.trace.sampler != SamplerKind::random && !plan_.request.pixels;
     if (!why.empty()) out_.left_out.push_back(kPackets + why);
     set_walk(why.empty() ? "packet" : alone ? "plain" : asked, &out_);
   }
