@@ -7,7 +7,8 @@
 
 #include "clray/export.hpp"
 
-namespace CLRAY_API clray {
+CLRAY_API_BEGIN
+namespace clray {
 
 /// A detector asked for by a scene or by --detector.
 struct DetectorSpec {
@@ -24,3 +25,4 @@ inline const std::string& shown_name(const DetectorSpec& detector) {
 }
 
 }  // namespace clray
+CLRAY_API_END

@@ -9,7 +9,8 @@
 
 #include "clray/export.hpp"
 
-namespace CLRAY_API clray {
+CLRAY_API_BEGIN
+namespace clray {
 
 /// One OpenCL device as `clray --list devices` shows it.
 struct DeviceInfo {
@@ -78,3 +79,4 @@ class Device {
 };
 
 }  // namespace clray
+CLRAY_API_END

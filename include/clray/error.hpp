@@ -8,7 +8,8 @@
 
 #include "clray/export.hpp"
 
-namespace CLRAY_API clray {
+CLRAY_API_BEGIN
+namespace clray {
 
 /// What kind of thing went wrong; the value is the exit status of the command line.
 enum class ErrorCode : int {
@@ -44,3 +45,4 @@ class Error : public std::runtime_error {
 };
 
 }  // namespace clray
+CLRAY_API_END

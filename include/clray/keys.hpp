@@ -9,7 +9,8 @@
 
 #include "clray/export.hpp"
 
-namespace CLRAY_API clray {
+CLRAY_API_BEGIN
+namespace clray {
 
 /// One key, all in words.
 struct KeyInfo {
@@ -43,3 +44,4 @@ std::string key_fault(const std::string& of, const std::string& name, const std:
 std::string list_table(const std::string& name);
 
 }  // namespace clray
+CLRAY_API_END

@@ -10,7 +10,8 @@
 #include "clray/result.hpp"
 #include "clray/scene.hpp"
 
-namespace CLRAY_API clray {
+CLRAY_API_BEGIN
+namespace clray {
 
 /// Every instant of the scene's pass, traced or not; empty without a pass. Throws Error(input) for files that cannot be
 /// read or do not cover the pass, and where nothing is left to trace.
@@ -24,3 +25,4 @@ std::vector<std::string> pass_warnings(const Scene& scene);
 std::string describe_pass(const Scene& scene);
 
 }  // namespace clray
+CLRAY_API_END

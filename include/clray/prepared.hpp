@@ -11,7 +11,8 @@
 #include "clray/scene.hpp"
 #include "clray/trace.hpp"
 
-namespace CLRAY_API clray {
+CLRAY_API_BEGIN
+namespace clray {
 
 /// Keeps what a trace needs and no view changes. Every trace gives the same bits as trace() of the same scene.
 ///
@@ -47,3 +48,4 @@ class Prepared {
 };
 
 }  // namespace clray
+CLRAY_API_END

@@ -11,7 +11,8 @@
 #include "clray/saved.hpp"
 #include "clray/trace.hpp"
 
-namespace CLRAY_API clray {
+CLRAY_API_BEGIN
+namespace clray {
 
 /// What one process tells another.
 struct RankMessage {
@@ -45,3 +46,4 @@ Result trace(const Scene& scene, Device& device, const TraceHooks& hooks, const 
 void leave_run(Ranks& ranks, const std::string& why);
 
 }  // namespace clray
+CLRAY_API_END

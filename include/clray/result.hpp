@@ -20,7 +20,8 @@
 #include "clray/result/table.hpp"
 #include "clray/scene.hpp"
 
-namespace CLRAY_API clray {
+CLRAY_API_BEGIN
+namespace clray {
 
 /// Everything a run found.
 struct Result {
@@ -60,3 +61,4 @@ struct Result {
 };
 
 }  // namespace clray
+CLRAY_API_END

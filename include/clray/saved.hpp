@@ -10,7 +10,8 @@
 #include "clray/export.hpp"
 #include "clray/trace.hpp"
 
-namespace CLRAY_API clray {
+CLRAY_API_BEGIN
+namespace clray {
 
 /// One of several shares of a run, numbered from 1.
 struct Share {
@@ -59,3 +60,4 @@ Verified verify(const Scene& scene, Device& device, const std::string& file, dou
                 const TraceHooks& hooks = {});
 
 }  // namespace clray
+CLRAY_API_END

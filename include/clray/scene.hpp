@@ -22,7 +22,8 @@
 #include "clray/trace.hpp"
 
 /// The library: scenes, devices, traces, results.
-namespace CLRAY_API clray {
+CLRAY_API_BEGIN
+namespace clray {
 
 /// Three numbers: x, y, z.
 using Vec3 = glm::dvec3;
@@ -396,3 +397,4 @@ void check_scene(const Scene& scene);
 std::string describe_scene(const Scene& scene);
 
 }  // namespace clray
+CLRAY_API_END

@@ -11,7 +11,8 @@
 #include "clray/result.hpp"
 #include "clray/write.hpp"
 
-namespace CLRAY_API clray {
+CLRAY_API_BEGIN
+namespace clray {
 
 /// Shots of a laser-ranging session over the motion of `scene`, from its delay results (docs/physics.md, section 5);
 /// written by write_result() where the scene has a station and a motion.
@@ -66,3 +67,4 @@ void expect_photons(const Scene& scene, Result* result);
 std::string link_budget_text(const Scene& scene, const Result& result);
 
 }  // namespace clray
+CLRAY_API_END

@@ -5,7 +5,8 @@
 #include "clray/export.hpp"
 #include "clray/scene.hpp"
 
-namespace CLRAY_API clray {
+CLRAY_API_BEGIN
+namespace clray {
 
 /// Bytes, within a factor of about two; what does not grow with views, lanes, bins or pixels is left out.
 struct SceneSizes {
@@ -32,3 +33,4 @@ void check_windows(const Scene& scene);
 std::string size_fault(const Scene& scene, const std::string& folder);
 
 }  // namespace clray
+CLRAY_API_END

@@ -9,7 +9,8 @@
 
 #include "clray/export.hpp"
 
-namespace CLRAY_API clray {
+CLRAY_API_BEGIN
+namespace clray {
 
 struct Scene;
 struct Result;
@@ -71,3 +72,4 @@ Result trace(const Scene& scene, Device& device, const TraceHooks& hooks = {});
 std::string kernel_source(const Scene& scene, Device& device);
 
 }  // namespace clray
+CLRAY_API_END

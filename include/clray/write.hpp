@@ -12,7 +12,8 @@
 #include "clray/export.hpp"
 #include "clray/result.hpp"
 
-namespace CLRAY_API clray {
+CLRAY_API_BEGIN
+namespace clray {
 
 /// Files that another part adds to a result, and its entry in the summary.
 struct MoreFiles {
@@ -82,3 +83,4 @@ ResultText describe_result(const Result& result);
 std::string format_with_error(double value, double error);
 
 }  // namespace clray
+CLRAY_API_END

@@ -28,15 +28,20 @@ void freeze_hinges(const clray::Vec3& source, const clray::Vec3& first_observer,
   }
 }
 
-/// The station's range at a time, from its table where it has one.
+/// The station's range at a time, from its table where it has one: the polynomial through its rows, which are at most
+/// four (docs/laser-ranging.md).
 void freeze_range(double time_s, Scene* scene) {
   if (!scene->station || scene->station->ranges.empty()) return;
   const auto& table = scene->station->ranges;
-  for (std::size_t i = 1; i < table.size(); ++i) {
-    if (time_s < table[i - 1].first || time_s > table[i].first) continue;
-    const double share = (time_s - table[i - 1].first) / (table[i].first - table[i - 1].first);
-    scene->station->range_m = table[i - 1].second + share * (table[i].second - table[i - 1].second);
+  double range = 0.0;
+  for (const auto& [at, value] : table) {
+    double weight = 1.0;
+    for (const auto& [other, unused] : table) {
+      if (other != at) weight *= (time_s - other) / (at - other);
+    }
+    range += weight * value;
   }
+  scene->station->range_m = range;
   scene->station->ranges.clear();
 }
 

@@ -8,7 +8,8 @@
 #include "clray/export.hpp"
 #include "clray/result/estimate.hpp"
 
-namespace CLRAY_API clray {
+CLRAY_API_BEGIN
+namespace clray {
 
 /// The delay camera: A(t), see docs/physics.md, section 1.
 struct DelayResult {
@@ -29,3 +30,4 @@ struct DelayResult {
 };
 
 }  // namespace clray
+CLRAY_API_END

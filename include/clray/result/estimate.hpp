@@ -10,7 +10,8 @@
 #include "clray/export.hpp"
 #include "clray/scene.hpp"
 
-namespace CLRAY_API clray {
+CLRAY_API_BEGIN
+namespace clray {
 
 /// A number with its error, from the spread of the replicates.
 struct Estimate {
@@ -56,3 +57,4 @@ struct ResultKey {
 };
 
 }  // namespace clray
+CLRAY_API_END

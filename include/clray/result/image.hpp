@@ -7,7 +7,8 @@
 #include "clray/export.hpp"
 #include "clray/result/estimate.hpp"
 
-namespace CLRAY_API clray {
+CLRAY_API_BEGIN
+namespace clray {
 
 /// A picture or cube: radiance over irradiance (1/sr) per pixel and band.
 struct ImageResult {
@@ -32,3 +33,4 @@ struct ImageResult {
 };
 
 }  // namespace clray
+CLRAY_API_END

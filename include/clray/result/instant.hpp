@@ -9,7 +9,8 @@
 #include "clray/export.hpp"
 #include "clray/scene.hpp"
 
-namespace CLRAY_API clray {
+CLRAY_API_BEGIN
+namespace clray {
 
 /// A place on the Earth at an instant of a pass, as light from the body arrives there (from a station: midway between
 /// fire and return).
@@ -41,3 +42,4 @@ struct PassInstant {
 };
 
 }  // namespace clray
+CLRAY_API_END

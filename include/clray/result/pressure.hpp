@@ -7,7 +7,8 @@
 #include "clray/export.hpp"
 #include "clray/result/estimate.hpp"
 
-namespace CLRAY_API clray {
+CLRAY_API_BEGIN
+namespace clray {
 
 /// Radiation force and torque per unit irradiance, net of all bounces.
 struct PressureResult {
@@ -23,3 +24,4 @@ struct PressureResult {
 };
 
 }  // namespace clray
+CLRAY_API_END

@@ -9,7 +9,8 @@
 #include "clray/export.hpp"
 #include "clray/result/estimate.hpp"
 
-namespace CLRAY_API clray {
+CLRAY_API_BEGIN
+namespace clray {
 
 /// Energy books of one variant and band where paths scatter, as power over irradiance, the mean over the orientations
 /// (docs/physics.md, section 4). Of a grid of Sun directions, the mean over the grid; `key.detector` then names its
@@ -64,3 +65,4 @@ struct Seconds {
 };
 
 }  // namespace clray
+CLRAY_API_END

@@ -5,7 +5,8 @@
 #include "clray/export.hpp"
 #include "clray/result/estimate.hpp"
 
-namespace CLRAY_API clray {
+CLRAY_API_BEGIN
+namespace clray {
 
 /// The one-pixel spectrometer: A in one band.
 struct SpectrometerResult {
@@ -24,3 +25,4 @@ struct SpectrometerResult {
 };
 
 }  // namespace clray
+CLRAY_API_END

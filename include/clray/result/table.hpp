@@ -8,7 +8,8 @@
 #include "clray/export.hpp"
 #include "clray/result/estimate.hpp"
 
-namespace CLRAY_API clray {
+CLRAY_API_BEGIN
+namespace clray {
 
 /// The numbers of a sum that a detector's row states with a unit, each with its error.
 struct TableResult {
@@ -19,3 +20,4 @@ struct TableResult {
 };
 
 }  // namespace clray
+CLRAY_API_END
