@@ -95,8 +95,8 @@ TEST_CASE("sampled weight is eval times cosine over pdf, its mean the reflectanc
     for (double mu : {1.0, 0.6, 0.05}) {
       CAPTURE(mu);
       const vec3 wi = incident(mu);
-      const int count = 50000;
-      double sum = 0.0, sum2 = 0.0, worst = 0.0, largest = 0.0;
+      const int count = 200000;
+      double sum = 0.0, sum2 = 0.0, worst = 0.0;
       for (int k = 0; k < count; ++k) {
         const double lobe = uniform(random), u = uniform(random), v = uniform(random);  // in this order everywhere
         const BrdfSample s = m.sample(wi, lobe, u, v);
@@ -109,7 +109,6 @@ TEST_CASE("sampled weight is eval times cosine over pdf, its mean the reflectanc
         REQUIRE(std::fabs(v3_length(s.wo) - 1.0) < 1e-15);
         sum += s.weight;
         sum2 += s.weight * s.weight;
-        largest = std::max(largest, s.weight);
         if (s.delta) {
           REQUIRE(a.sin2_half < 1e-30);
           REQUIRE(s.weight == m.reflectance(mu));
@@ -122,9 +121,9 @@ TEST_CASE("sampled weight is eval times cosine over pdf, its mean the reflectanc
       }
       CHECK(worst < 1e-13);
       const double mean = sum / count, error = std::sqrt(std::max(0.0, sum2 / count - mean * mean) / count);
-      // 6 standard errors; and what no draw has shown has a probability of at most 14/count (odds of a million to one)
-      // and a weight like the others.
-      CHECK(std::fabs(mean - m.reflectance(mu)) <= 6.0 * error + 14.0 / count * std::max(1.0, largest));
+      // 6 standard errors; 1e-5 for rare large weights that a small sample may miss. What happens once in 10,000 draws
+      // happens 20 times here, so that the error knows of it.
+      CHECK(std::fabs(mean - m.reflectance(mu)) <= 6.0 * error + 1e-5);
     }
   }
 }
