@@ -39,11 +39,12 @@ void DevicePass::fill(const char* name, const Numbers<T>& numbers, bool of_the_b
   const std::size_t count = std::max<std::size_t>(numbers.count, 1);
   // The body, which outlives its passes, and large tables of a plan are read where they stand. No launch follows the
   // plan's end before the next one is filled in.
+  const auto at = buffers_.find(name);
+  if (of_the_body && at != buffers_.end() && at->second.of_the_host) return;  // a pass has one body
   if (opened_.shares_memory && (of_the_body || name == std::string("strata")) && numbers.count > 0) {
     buffers_[name] = {{nullptr, buffer_of(opened_, numbers.data, numbers.count)}, count, true};
     return;
   }
-  const auto at = buffers_.find(name);
   const bool fits = at != buffers_.end() && at->second.count >= count && !at->second.of_the_host;
   if (fits && (numbers.data == nullptr || of_the_body)) return;  // drains leave zeros, and a pass has one body
   Kept made{{}, count};
