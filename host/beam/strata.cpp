@@ -12,10 +12,11 @@
 namespace clray {
 namespace {
 
-constexpr double kMostStrips = 1024.0;   // over the body, of path length
-constexpr int kMostCuts = 32;            // parts of a cell
-constexpr double kMostPieces = 1 << 27;  // over all views; cells are rarely cut into so many
-constexpr std::size_t kStretch = 4;      // intervals of path on either side that share one probability
+constexpr double kMostStrips = 1024.0;      // over the body, of path length
+constexpr double kSmallestExtent = 1e-300;  // m; paths of a body seen face-on are all alike
+constexpr int kMostCuts = 32;               // parts of a cell
+constexpr double kMostPieces = 1 << 27;     // over all views; cells are rarely cut into so many
+constexpr std::size_t kStretch = 4;         // intervals of path on either side that share one probability
 // These shares of the probability follow area and path length; the rest follows what the surface sends.
 constexpr double kByArea = 0.25;
 constexpr double kByPath = 0.375;
@@ -101,15 +102,19 @@ class Stratifier {
     const double* o = beams_.connections[v_ * (beams_.connections.size() / beams_.views.size())].direction;
     way_ = to_beam(o);
     way_.z += 1.0;
-    first_ = steering_.bins->first_m - v3_dot(way_, to_beam(&reference[0]));
     width_ = steering_.bins->bin_m;
     const PathRange paths = steering_.paths.view(v_);
     const double extent = paths.high_m - paths.low_m;
     while (extent > kMostStrips * width_) width_ *= 2.0;
-    while (extent < 0.25 * kMostStrips * width_) width_ *= 0.5;
+    while (extent > kSmallestExtent && extent < 0.25 * kMostStrips * width_) width_ *= 0.5;
+    // Strips end where bins do, unless the window is so far off that bins up to the body cannot be counted.
+    double origin = steering_.bins->first_m;
+    const double off = std::max(std::fabs(paths.low_m - origin), std::fabs(paths.high_m - origin));
+    if (!(off < 0x1p52 * width_)) origin = paths.low_m;
+    first_ = origin - v3_dot(way_, to_beam(&reference[0]));
     const double cells = static_cast<double>(beams_.views.size() * cells_->size());
-    lowest_ = static_cast<std::int64_t>(std::floor((paths.low_m - steering_.bins->first_m) / width_));
-    highest_ = static_cast<std::int64_t>(std::floor((paths.high_m - steering_.bins->first_m) / width_));
+    lowest_ = static_cast<std::int64_t>(std::floor((paths.low_m - origin) / width_));
+    highest_ = static_cast<std::int64_t>(std::floor((paths.high_m - origin) / width_));
     cuts_ = std::clamp(static_cast<int>(kMostPieces / cells), 1, kMostCuts);  // few cells need as many
   }
 

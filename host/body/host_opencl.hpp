@@ -37,6 +37,11 @@ inline u32 as_uint(f32 x) {
   std::memcpy(&bits, &x, sizeof bits);
   return bits;
 }
+inline f32 as_float(u32 bits) {
+  f32 x;
+  std::memcpy(&x, &bits, sizeof x);
+  return x;
+}
 inline f32 convert_float_rtp(f64 x) {
   const f32 near = static_cast<f32>(x);
   return static_cast<f64>(near) < x ? std::nextafterf(near, HUGE_VALF) : near;

@@ -79,11 +79,9 @@ void set_scales(const Scales& scales, std::vector<ClrayView>* views) {
   }
 }
 
-/// One side of a square of the beam's rectangle that holds some faces, as a share 1/n: this n, a power of two.
+/// One side of a square of the beam's rectangle that holds some 16 faces, as a share 1/n: this n.
 std::uint32_t finest_of(const Geometry& geometry) {
-  std::uint64_t finest = 1;
-  while (16 * finest * finest < geometry.primitives.size()) finest *= 2;
-  return static_cast<std::uint32_t>(finest);
+  return static_cast<std::uint32_t>(std::ceil(std::sqrt(static_cast<double>(geometry.primitives.size()) / 16.0)));
 }
 
 ClrayPass constants_of(const Scene& scene, const Geometry& geometry, const PassPlan& plan) {

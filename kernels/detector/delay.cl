@@ -10,6 +10,26 @@
 #define CLRAY_DELAY_LARGEST 1u
 #define CLRAY_DELAY_HITS 2u
 
+/// Adds `hits` weights, with the sum `sum`, to a bin.
+static void delay_add(const Buffers* g, u32 d, u64 row, u32 bin, i64 sum, u32 hits) {
+  add_nonzero(g->sums, sum_row(g, d, CLRAY_DELAY_BINS, row) + bin, sum);
+  atomic_add(g->counts + sum_row(g, d, CLRAY_DELAY_HITS, row) + bin, hits);
+}
+
+#if CLRAY_HOLD
+/// Adds a weight to a bin that waits; one that it displaces is added up.
+static void delay_hold(const Buffers* g, u32 d, u64 row, HeldBins* held, u32 bin, i64 sum) {
+  const u32 slot = bin % CLRAY_HELD_BINS;
+  if (held->hits[slot] != 0u && held->bin[slot] != bin) {
+    delay_add(g, d, row, held->bin[slot], held->sum[slot], held->hits[slot]);
+    held->hits[slot] = 0u;
+  }
+  held->bin[slot] = bin;
+  held->sum[slot] = (held->hits[slot] != 0u ? held->sum[slot] : 0) + sum;
+  ++held->hits[slot];
+}
+#endif
+
 static void detector_delay_connect(const Buffers* g, Tally* tally, u32 n, u32 c, const Light* weights, f64 length,
                                    vec3 point) {
   (void)point;
@@ -22,11 +42,18 @@ static void detector_delay_connect(const Buffers* g, Tally* tally, u32 n, u32 c,
     const f64 w = weights->lane[lane];
     if (w == 0.0) continue;
     const u64 row = connection_row(g, tally, lane, c);
-    accumulate(g->sums, g->wide, sum_row(g, d, CLRAY_DELAY_BINS, row) + bin, w, g->views[tally->view].weight_scale,
-               g->views[tally->view].weight_limit, g->counters);
-    atomic_inc(g->counts + sum_row(g, d, CLRAY_DELAY_HITS, row) + bin);
-    i64* largest = tally->kept + CLRAY_KEPT_delay_largest + (n * CLRAY_LANES + lane) * CLRAY_CONNECTIONS + c;
-    *largest = max(*largest, (i64)as_uint(convert_float_rtp(w)));
+    const u32 own = (n * CLRAY_LANES + lane) * CLRAY_CONNECTIONS + c;
+    i64 wide;
+    const i64 sum =
+        to_fixed(w, g->views[tally->view].weight_scale, g->views[tally->view].weight_limit, &wide, g->counters);
+    if (CLRAY_WIDE) add_nonzero(g->wide, sum_row(g, d, CLRAY_DELAY_BINS, row) + bin, wide);
+#if CLRAY_HOLD
+    delay_hold(g, d, row, tally->held + own, bin, sum);
+#else
+    delay_add(g, d, row, bin, sum, 1u);
+#endif
+    i64* largest = tally->kept + CLRAY_KEPT_delay_largest + own;
+    if (!(w <= (f64)as_float((u32)*largest))) *largest = max(*largest, (i64)as_uint(convert_float_rtp(w)));
   }
 }
 
@@ -34,9 +61,16 @@ static void detector_delay_flush(const Buffers* g, const Tally* tally, u32 n) {
   const u32 d = CLRAY_FIRST_delay + n;
   for (u32 lane = 0; lane < CLRAY_LANES; ++lane) {
     for (u32 c = 0; c < CLRAY_CONNECTIONS; ++c) {
-      const i64 largest = tally->kept[CLRAY_KEPT_delay_largest + (n * CLRAY_LANES + lane) * CLRAY_CONNECTIONS + c];
-      if (largest == 0) continue;
-      atomic_max(g->counts + sum_row(g, d, CLRAY_DELAY_LARGEST, connection_row(g, tally, lane, c)), (u32)largest);
+      const u32 own = (n * CLRAY_LANES + lane) * CLRAY_CONNECTIONS + c;
+      const u64 row = connection_row(g, tally, lane, c);
+#if CLRAY_HOLD
+      const HeldBins* held = tally->held + own;
+      for (u32 k = 0; k < CLRAY_HELD_BINS; ++k) {
+        if (held->hits[k] != 0u) delay_add(g, d, row, held->bin[k], held->sum[k], held->hits[k]);
+      }
+#endif
+      const i64 largest = tally->kept[CLRAY_KEPT_delay_largest + own];
+      if (largest != 0) atomic_max(g->counts + sum_row(g, d, CLRAY_DELAY_LARGEST, row), (u32)largest);
     }
   }
 }

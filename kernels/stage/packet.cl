@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Packets: up to 16 rays of one direction that start near each other meet the body together. Which ray hits what has
+// Packets: up to 32 rays of one direction that start near each other meet the body together. Which ray hits what has
 // the same bits as for a ray alone (stage/intersect.cl): the walk hands out every leaf that one of them touches, and
 // the fp64 test of triangles is that of shape/triangle.cl, four rays at a time. Packets of shadow rays ask only whether
 // anything is hit.
@@ -8,8 +8,9 @@
 
 #if CLRAY_PACKET
 
-#define CLRAY_PACKET_RAYS 16u
-#define CLRAY_PACKET_FEW 4u  // rays that go alone rather than as a packet are fewer
+#define CLRAY_PACKET_RAYS 32u  // a set of them is a bit each of a u32
+#define CLRAY_PACKET_WIDE 8u   // rays that the fp32 test takes at once: a packet is filled up to a multiple of it
+#define CLRAY_PACKET_FEW 4u    // rays that go alone rather than as a packet are fewer
 
 /// Rays of a packet and what they have hit so far. Coordinates of origins as in triangle_permute().
 typedef struct Packet {
@@ -17,8 +18,9 @@ typedef struct Packet {
   f64 t[CLRAY_PACKET_RAYS];
   Ray ray[CLRAY_PACKET_RAYS];
   Hit hit[CLRAY_PACKET_RAYS];
-  u32 rays;  // those after it stand where the first does and hit nothing
-  u32 any;   // a ray that has hit something looks for nothing else
+  u32 rays;    // those after it stand where the first does and hit nothing
+  u32 filled;  // number of rays with those
+  u32 any;     // a ray that has hit something looks for nothing else
   // The rectangle across the rays that they start in, in the frame of shape/triangle.cl: its middle as a point, half
   // its sizes, and a bound of what rounding may move a vertex across.
   vec3 middle;
@@ -33,10 +35,17 @@ static double4 products_difference4(double4 a, double4 b, double4 c, double4 d) 
   return fma(a, b, -w) + fma(-c, d, w);
 }
 
-/// Tests a primitive against ray k of a packet alone.
-static void packet_test_one(const Buffers* g, Packet* p, u32 k, u32 index) {
+/// Tests a primitive against ray k of a packet alone. `as_all`: what it shares with all of them.
+static void packet_test_one(const Buffers* g, Packet* p, const LocalRay* as_all, u32 k, u32 index) {
   if (index == p->ray[k].skip_primitive) return;
-  const LocalRay placed = local_ray(p->ray[k].o, p->ray[k].d, p->ray[k].skip_plane);
+  LocalRay placed = *as_all;
+  placed.o = p->ray[k].o;
+  placed.skip_plane = p->ray[k].skip_plane;
+#if CLRAY_TRIANGLES
+  placed.shear.ox = p->x[k];
+  placed.shear.oy = p->y[k];
+  placed.shear.oz = p->z[k];
+#endif
   test_primitive(g, &placed, index, 0u, &p->hit[k]);
   p->t[k] = p->any && p->hit[k].primitive != 0xffffffffu ? -INFINITY : p->hit[k].t;
 }
@@ -60,14 +69,14 @@ static u32 packet_may_hit(const Packet* p, const RayShear* r, const __global f64
   const double4 x1 = x.s2013, x2 = x.s1203, y1 = y.s2013, y2 = y.s1203;
   const double4 edge = x1 * y2 - y1 * x2;
   const f64 det = edge.s0 + edge.s1 + edge.s2;
-  if (fabs(det) <= 4.0 * p->loss) return 0xffffu;
+  if (fabs(det) <= 4.0 * p->loss) return 0xffffffffu;
   const f64 unit = det < 0.0 ? -p->unit : p->unit;
   const float4 along_x = convert_float4((y1 - y2) * (unit * p->half_x));
   const float4 along_y = convert_float4((x2 - x1) * (unit * p->half_y));
   const float4 rest = convert_float4(edge * unit);
   const float4 start = rest + (fabs(rest) + fabs(along_x) + fabs(along_y)) * 9.5367431640625e-7f + p->loss_here;
   u32 mask = 0u;
-  for (u32 k = 0; k < 2u; ++k) {
+  for (u32 k = 0; k < p->filled / CLRAY_PACKET_WIDE; ++k) {
     const float8 px = vload8(k, p->px), py = vload8(k, p->py);
     const float8 u = fma((float8)(along_x.s0), px, fma((float8)(along_y.s0), py, (float8)(start.s0)));
     const float8 v = fma((float8)(along_x.s1), px, fma((float8)(along_y.s1), py, (float8)(start.s1)));
@@ -76,23 +85,33 @@ static u32 packet_may_hit(const Packet* p, const RayShear* r, const __global f64
     const int8 bits = ~(least < (float8)(0.0f)) & (int8)(1, 2, 4, 8, 16, 32, 64, 128);
     const int4 four = bits.lo | bits.hi;
     const int2 two = four.lo | four.hi;
-    mask |= (u32)(two.s0 | two.s1) << (8u * k);
+    mask |= (u32)(two.s0 | two.s1) << (CLRAY_PACKET_WIDE * k);
   }
   return mask;
 }
 // lint: end box test
 
-/// Tests a triangle against all rays of a packet: triangle_intersect() for four at a time.
-static void packet_triangle(const Buffers* g, Packet* p, const RayShear* r, u32 index) {
+/// Tests a triangle against all rays of a packet: triangle_intersect() for four at a time, or, where it shares its
+/// plane with other faces, ray by ray.
+static void packet_triangle(const Buffers* g, Packet* p, const LocalRay* as_all, u32 index) {
   const __global ClrayPrimitive* primitive = g->primitives + index;
   const __global f64* data = primitive_numbers(g, index);
+  const RayShear* r = &as_all->shear;
   const u32 mask = packet_may_hit(p, r, data);
   if (mask == 0u) return;
+#if CLRAY_PLANES
+  if (primitive->planes != CLRAY_NO_PLANES) {
+    for (u32 k = 0; k < p->rays; ++k) {
+      if ((mask >> k) & 1u) packet_test_one(g, p, as_all, k, index);
+    }
+    return;
+  }
+#endif
   const vec3 pa = triangle_permute(v3_load(data), r->iz);
   const vec3 pb = triangle_permute(v3_load(data + 3), r->iz);
   const vec3 pc = triangle_permute(v3_load(data + 6), r->iz);
   const double4 sx = (double4)(-r->sx), sy = (double4)(-r->sy);
-  for (u32 q = 0; q < CLRAY_PACKET_RAYS / 4u; ++q) {
+  for (u32 q = 0; q < p->filled / 4u; ++q) {
     if (((mask >> (4u * q)) & 15u) == 0u) continue;
     const double4 ox = vload4(q, p->x), oy = vload4(q, p->y), oz = vload4(q, p->z);
     const double4 a_along = pa.z - oz, b_along = pb.z - oz, c_along = pc.z - oz;
@@ -146,7 +165,7 @@ static void packet_frame(const __global ClrayView* from, const RayShear* r, vec3
       triangle_permute(v3(0.5 * (low.x + high.x), 0.5 * (low.y + high.y), 0.5 * (low.z + high.z)), r->iz);
   p->middle = middle;
   double4 half_x = (double4)(0.0), half_y = half_x;
-  for (u32 q = 0; q < CLRAY_PACKET_RAYS / 4u; ++q) {
+  for (u32 q = 0; q < p->filled / 4u; ++q) {
     const double4 z = vload4(q, p->z) - middle.z;
     const double4 x = fabs(fma((double4)(-r->sx), z, vload4(q, p->x) - middle.x));
     const double4 y = fabs(fma((double4)(-r->sy), z, vload4(q, p->y) - middle.y));
@@ -159,7 +178,7 @@ static void packet_frame(const __global ClrayView* from, const RayShear* r, vec3
   p->loss = 8.0 * p->margin * (size_of(v3_sub(low, centre)) + size_of(v3_sub(high, centre)) + 4.0 / from->box_scale);
   p->unit = from->box_scale * from->box_scale;
   p->loss_here = (f32)(p->loss * p->unit) * 1.001f + 1.0e-30f;
-  for (u32 q = 0; q < CLRAY_PACKET_RAYS / 4u; ++q) {
+  for (u32 q = 0; q < p->filled / 4u; ++q) {
     const double4 z = vload4(q, p->z) - middle.z;
     const double4 x = fma((double4)(-r->sx), z, vload4(q, p->x) - middle.x) / p->half_x;
     const double4 y = fma((double4)(-r->sy), z, vload4(q, p->y) - middle.y) / p->half_y;
@@ -169,16 +188,6 @@ static void packet_frame(const __global ClrayView* from, const RayShear* r, vec3
 }
 // lint: end box test
 
-/// Whether a primitive is a triangle that shares its plane with no other face.
-static bool packet_takes(const __global ClrayPrimitive* primitive) {
-#if CLRAY_ANALYTIC
-  if (primitive->shape != CLRAY_SHAPE_triangle) return false;
-#endif
-#if CLRAY_PLANES
-  if (primitive->planes != CLRAY_NO_PLANES) return false;
-#endif
-  return true;
-}
 #endif
 
 /// How far along the rays of a packet a point lies beyond the start of the first.
@@ -210,8 +219,9 @@ static void packet_box(const __global ClrayView* from, const Packet* p, vec3* lo
 
 /// Puts the rays of a packet side by side, with nothing hit.
 static void packet_fill(Packet* p, u32 axis) {
-  for (u32 k = p->rays; k < CLRAY_PACKET_RAYS; ++k) p->ray[k] = p->ray[0];
-  for (u32 k = 0; k < CLRAY_PACKET_RAYS; ++k) {
+  p->filled = (p->rays + CLRAY_PACKET_WIDE - 1u) / CLRAY_PACKET_WIDE * CLRAY_PACKET_WIDE;
+  for (u32 k = p->rays; k < p->filled; ++k) p->ray[k] = p->ray[0];
+  for (u32 k = 0; k < p->filled; ++k) {
 #if CLRAY_TRIANGLES
     const vec3 placed = triangle_permute(p->ray[k].o, axis);
     p->x[k] = placed.x;
@@ -232,10 +242,10 @@ static void packet_intersect(const Buffers* g, u32 view, Packet* p) {
   }
   vec3 low, high;
   packet_box(from, p, &low, &high);
+  const LocalRay as_all = local_ray(p->ray[0].o, p->ray[0].d, 0u);
 #if CLRAY_TRIANGLES
-  const RayShear shear = triangle_shear(p->ray[0].o, p->ray[0].d);
-  packet_fill(p, shear.iz);
-  packet_frame(from, &shear, low, high, p);
+  packet_fill(p, as_all.shear.iz);
+  packet_frame(from, &as_all.shear, low, high, p);
 #else
   packet_fill(p, 0u);
 #endif
@@ -245,17 +255,16 @@ static void packet_intersect(const Buffers* g, u32 view, Packet* p) {
   bvh_begin_between(&walk, from->root, low, high, p->ray[0].d, v3_load(from->box_centre), from->box_scale);
   while (bvh_next(&walk, g->nodes, t_max, &first, &count, g->counters)) {
     for (u32 index = first; index < first + count; ++index) {
-      const __global ClrayPrimitive* primitive = g->primitives + index;
 #if CLRAY_TRIANGLES
-      if (packet_takes(primitive)) {
-        packet_triangle(g, p, &shear, index);
+      if (!CLRAY_ANALYTIC || g->primitives[index].shape == CLRAY_SHAPE_triangle) {
+        packet_triangle(g, p, &as_all, index);
         continue;
       }
 #endif
-      for (u32 k = 0; k < p->rays; ++k) packet_test_one(g, p, k, index);
+      for (u32 k = 0; k < p->rays; ++k) packet_test_one(g, p, &as_all, k, index);
     }
     double4 far = vload4(0, p->t);
-    for (u32 q = 1; q < CLRAY_PACKET_RAYS / 4u; ++q) {
+    for (u32 q = 1; q < p->filled / 4u; ++q) {
       const double4 t = vload4(q, p->t);
       far = far > t ? far : t;
     }

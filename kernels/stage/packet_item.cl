@@ -46,15 +46,15 @@ static void packet_shadows(const Buffers* g, u32 view, const Surface* met, u32 h
 
 /// A work-item of packets: part `part` of a block of points, up to `chunk` of them, of all replicates of a view.
 static void trace_packets(const Buffers* g, u32 view, u32 first_point, u32 points, u32 part, u32 chunk) {
-  const u32 replicates = min(g->pass->replicates, CLRAY_PACKET_RAYS);
+  const u32 replicates = min(g->pass->replicates, CLRAY_PACKET_REPLICATES);
   const u32 cells = min(chunk, points - part * chunk);
   const __global ClrayView* from = g->views + view;
   Buffers own = *g;
   own.counters += CLRAY_COUNTERS * view;
-  Tally tally[CLRAY_PACKET_RAYS];
-  Sampler sampler[CLRAY_PACKET_RAYS];
+  Tally tally[CLRAY_PACKET_REPLICATES];
+  Sampler sampler[CLRAY_PACKET_REPLICATES];
   BeamPoint point[CLRAY_PACKET_ITEM];
-  u32 order[CLRAY_PACKET_ITEM];
+  u32 place[CLRAY_PACKET_ITEM], order[CLRAY_PACKET_ITEM];
   for (u32 r = 0; r < replicates; ++r) {
     tally[r].view = view;
     tally[r].replicate = r;
@@ -63,11 +63,13 @@ static void trace_packets(const Buffers* g, u32 view, u32 first_point, u32 point
     const Sampler s = {g->pass->key0 ^ from->key0, g->pass->key1 ^ from->key1, g->pass->epoch, r, 0u, 0u};
     sampler[r] = s;
     sampler_begin(&sampler[r], g->directions, first_point);
-    packet_points(&own, &sampler[r], view, first_point, points, part, chunk, point + cells * r);
+    packet_points(&own, &sampler[r], view, first_point, points, part, chunk, point + CLRAY_PACKET_CELLS * r,
+                  place + CLRAY_PACKET_CELLS * r);
   }
   const u32 count = cells * replicates;
-  packet_sort(point, count, order);
+  packet_sort(place, replicates, cells, order);
   const f64 widest = f64_min(8.0 / sqrt((f64)points), 1.0 / (f64)max(g->pass->finest, 1u));
+  const f64 dense_width = 0.25 / (f64)max(g->pass->finest, 1u);  // where rays are denser than faces
   Packet packet;
   packet.any = 0u;
   Surface met[CLRAY_PACKET_RAYS];
@@ -82,7 +84,7 @@ static void trace_packets(const Buffers* g, u32 view, u32 first_point, u32 point
       low_v = f64_min(low_v, next->v);
       high_v = f64_max(high_v, next->v);
       const f64 with_next = f64_max(high_u - low_u, high_v - low_v);
-      if (with_next > widest) break;
+      if (with_next > (packet.rays < CLRAY_PACKET_RAYS / 2u ? widest : dense_width)) break;
       width = with_next;
       packet.ray[packet.rays++] = primary_ray(from, next->u, next->v);
     }
@@ -98,7 +100,7 @@ static void trace_packets(const Buffers* g, u32 view, u32 first_point, u32 point
     if (dense) packet_shadows(&own, view, met, hits, width, hidden);
     for (u32 k = 0; k < packet.rays; ++k) {
       const BeamPoint* start = point + order[begin + k];
-      const u32 r = start->replicate;
+      const u32 r = order[begin + k] / CLRAY_PACKET_CELLS;
       Path path = path_of(start->share);
       path.known = dense;
       path.hidden = dense ? hidden[k] : 0u;

@@ -91,6 +91,10 @@ static void record_end(const Buffers* g, Tally* tally, const Path* path) {
 static void tally_clear(Tally* tally) {
   tally->started = tally->escaped = tally->killed = tally->capped = 0u;
   for (u32 k = 0; k < CLRAY_KEPT; ++k) tally->kept[k] = 0;
+#if CLRAY_HOLD
+  for (u32 k = 0; k < CLRAY_HELD_ROWS * CLRAY_HELD_BINS; ++k)
+    tally->held[k / CLRAY_HELD_BINS].hits[k % CLRAY_HELD_BINS] = 0u;
+#endif
 }
 
 /// Adds what the item kept to the pass's sums.

@@ -77,11 +77,32 @@ typedef struct Scattering {
 #define CLRAY_KEPT_ROOM CLRAY_KEPT
 #endif
 
+// Neighbouring paths add to few bins. In packets what they add waits in rows of a few bins, so that one addition to
+// memory, which other work-items may add to, serves many paths. Passes with more rows add each at once.
+#define CLRAY_HELD_BINS 16u
+#define CLRAY_HELD_ROWS (CLRAY_COUNT_delay * CLRAY_LANES * CLRAY_CONNECTIONS)
+#define CLRAY_HOLD 0
+#if CLRAY_PACKET
+#if CLRAY_HELD_ROWS >= 1 && CLRAY_HELD_ROWS <= 4
+#undef CLRAY_HOLD
+#define CLRAY_HOLD 1
+#endif
+#endif
+
+/// What waits to be added to bins of one row: `hits` weights, whose integers have the sum `sum`.
+typedef struct HeldBins {
+  u32 bin[CLRAY_HELD_BINS], hits[CLRAY_HELD_BINS];
+  i64 sum[CLRAY_HELD_BINS];
+} HeldBins;
+
 /// Where a work-item adds: its view, its replicate, its pixel (stream = 1 + pixel; 0: a beam), and the sums it keeps.
 typedef struct Tally {
   u32 view, replicate, stream;
   u32 started, escaped, killed, capped;
   i64 kept[CLRAY_KEPT_ROOM];
+#if CLRAY_HOLD
+  HeldBins held[CLRAY_HELD_ROWS];
+#endif
 } Tally;
 
 #endif

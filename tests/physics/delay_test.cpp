@@ -111,6 +111,18 @@ TEST_CASE("shadow: a floor behind a wall is lit, or seen, by the share the wall 
   }
 }
 
+TEST_CASE("a window so far away that its bins up to the body cannot be counted leaves all light below it") {
+  const double tilt = radians(37.0);
+  clray::Scene scene = scene_of(plate_mesh(2.0, 1.0), lambert(0.5));
+  monostatic(scene, toward(tilt));
+  scene.detectors = {{"delay", "", {{"start_ns", 1e18}, {"stop_ns", 1.001e18}, {"bins", 1e7}}}};
+  scene.trace.method = clray::Method::points;
+  const clray::DelayResult found = run(scene).delay.at(0);
+  check_estimate(found.intensity_m2_per_sr, lambert_plate(0.5, 2.0, 1.0, tilt).total_m2_per_sr, 5e-4, "plate",
+                 1.0 / std::cos(tilt));
+  CHECK(found.below_m2_per_sr == relative(found.intensity_m2_per_sr.value).epsilon(1e-9));
+}
+
 TEST_CASE("an empty view gives zeros, no error and a warning") {
   clray::Scene scene = scene_of(plate_mesh(1, 1), lambert(1.0));
   monostatic(scene, {1, 0, 0});  // edge-on exactly

@@ -14,6 +14,7 @@
 #include "pipeline/host_pass.hpp"
 #include "pipeline/traced_self_test.hpp"
 #include "scene/tables.hpp"
+#include "support/sanitized.hpp"
 #include "unit/device_support.hpp"
 
 using namespace clray;
@@ -204,5 +205,5 @@ TEST_CASE("what passed is remembered for that device and program, with a checksu
     best_s = std::min(best_s, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   }
   MESSAGE("warm self-test: " << 1000.0 * best_s << " ms");
-  CHECK(best_s < 0.005);
+  if (!clray_test::kSanitized) CHECK(best_s < 0.005);
 }

@@ -20,6 +20,7 @@
 #include "slr/crd.hpp"
 #include "slr/link.hpp"
 #include "slr/session.hpp"
+#include "support/sanitized.hpp"
 
 using namespace clray;
 using namespace clray::slr;
@@ -222,8 +223,9 @@ TEST_CASE("a million records in under 3 s, with flat memory") {
   CHECK(s.shots == 1000000);
   CHECK(s.signal + s.noise == 1000000);
   MESSAGE("seconds for a million records: " << seconds);
-  CHECK(seconds < 3.0);
-  CHECK(peak_memory_KiB() - before < 2048);  // ten times the records: at most one block more
+  if (!clray_test::kSanitized) CHECK(seconds < 3.0);
+  if (!clray_test::kSanitized)
+    CHECK(peak_memory_KiB() - before < 2048);  // ten times the records: at most one block more
   const auto read_begin = std::chrono::steady_clock::now();
   CHECK(read_crd((folder.path / "observations.crd").string(), {}).ranges == 1000000);
   MESSAGE(
