@@ -43,10 +43,9 @@ static void detector_delay_connect(const Buffers* g, Tally* tally, u32 n, u32 c,
     if (w == 0.0) continue;
     const u64 row = connection_row(g, tally, lane, c);
     const u32 own = (n * CLRAY_LANES + lane) * CLRAY_CONNECTIONS + c;
-    i64 wide;
-    const i64 sum =
-        to_fixed(w, g->views[tally->view].weight_scale, g->views[tally->view].weight_limit, &wide, g->counters);
-    if (CLRAY_WIDE) add_nonzero(g->wide, sum_row(g, d, CLRAY_DELAY_BINS, row) + bin, wide);
+    i64 sum = 0;
+    keep(g, &sum, sum_row(g, d, CLRAY_DELAY_BINS, row) + bin, w, g->views[tally->view].weight_scale,
+         g->views[tally->view].weight_limit);
 #if CLRAY_HOLD
     delay_hold(g, d, row, tally->held + own, bin, sum);
 #else

@@ -96,7 +96,7 @@ static void trace_packets(const Buffers* g, u32 view, u32 first_point, u32 point
       met[k] = stage_surface(&own, &packet.ray[k], &packet.hit[k]);
     }
     // Where rays are sparser than faces, packets of shadow rays touch more than their rays alone would.
-    const u32 dense = width * (f64)g->pass->finest < 0.25;
+    const u32 dense = width < dense_width;
     if (dense) packet_shadows(&own, view, met, hits, width, hidden);
     for (u32 k = 0; k < packet.rays; ++k) {
       const BeamPoint* start = point + order[begin + k];
