@@ -51,7 +51,7 @@ PassOutcome solve_pass(const PassPlan& plan, const std::function<PointRunner&()>
     point.seconds = out.seconds;
     saved.errors = {point};
   }
-  out.sums = saver.keeps(plan) ? saved.found : std::move(saved.found);
+  out.sums = saver.hand_over(plan, true);
   out.errors = saved.errors;
   tell(1.0, true);
   out.target_reached = out.target_asked;

@@ -64,22 +64,25 @@ double MemoryPlan::host() const {
 MemoryPlan memory_plan(const Scene& scene, const Geometry& geometry, const std::vector<PassPlan>& plans,
                        double slab_bytes, bool shared) {
   MemoryPlan all;
-  double sums = 0.0, file = 0.0, strata = 0.0, results = 0.0;
+  double sums = 0.0, largest = 0.0, strata = 0.0, results = 0.0;
   for (const PassPlan* plan : passes_of(plans)) {
     const double own = sums_bytes(*plan);
     const double on_device = plan->request.without_rays() ? own : std::min(own, slab_bytes);
-    // Passes follow each other; what they found stays until the end, the last one's confirmation beside its search.
+    // Passes follow each other, and what they found stays for files of sums until the end. Beside the sums of one there
+    // are those of its open step, or of which its result is made, and those of its confirmation beside its search.
     sums += own;
-    file = std::max(file, own);
+    largest = std::max(largest, own);
     strata += static_cast<double>(plan->beams.strata.size() * sizeof(ClrayStratum));
     results += kOfNumber * static_cast<double>(plan->layout.values + plan->layout.counts) / plan->request.replicates;
     const double device = tables_bytes(*plan, geometry, shared) + on_device * (is_wide(*plan) ? 2.0 : 1.0);
     all.device = std::max(all.device, device);
   }
   const bool searches = scene.trace.rays == 0 && scene.trace.method != Method::exact;
-  all.of_host = {{"the program", kProgram}, {"the body", kOfFace * static_cast<double>(geometry.primitives.size())},
-                 {"strata", strata},        {"sums", sums + (searches ? file : 0.0)},
-                 {"files of sums", file},   {"results", results}};
+  all.of_host = {{"the program", kProgram},
+                 {"the body", kOfFace * static_cast<double>(geometry.primitives.size())},
+                 {"strata", strata},
+                 {"sums", sums + (searches ? 2.0 : 1.0) * largest},
+                 {"results", results}};
   return all;
 }
 

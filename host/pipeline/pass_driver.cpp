@@ -141,7 +141,7 @@ class PassDriver {
       if (!out_.partial) saved_.step = OpenStep();
     }
     saved_.complete = !out_.partial;
-    if (out_.partial) saver_.save();
+    saver_.save();
     out_.seconds = now() - start_;
     return std::move(out_);
   }
@@ -348,7 +348,7 @@ class PassDriver {
   PassOutcome answer() {
     out_.seconds = runner_ != nullptr ? now() - start_ : 0.0;
     out_.errors = saved_.errors;
-    out_.sums = saver_.keeps(plan_) ? saved_.found : std::move(saved_.found);
+    out_.sums = saver_.hand_over(plan_, saved_.complete);
     out_.target_asked = courses_.front().rules().target_asked;
     out_.target_reached = out_.target_asked;
     for (std::size_t v = 0; v < courses_.size(); ++v) {

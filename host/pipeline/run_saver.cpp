@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <utility>
 
 #include "clray/error.hpp"
 #include "pipeline/clock.hpp"
-#include "text/input_file.hpp"
 #include "text/output_file.hpp"
 
 namespace clray {
@@ -26,7 +26,7 @@ void RunSaver::begin(const std::vector<PassPlan>& plans, const Geometry& geometr
   for (const PassPlan* plan : plans_) layouts.push_back(&plan->layout);
   std::vector<SavedSums> found;
   for (const std::string& name : saving_.from) {
-    found.push_back(from_bytes(text::read_input_file(name), name));
+    found.push_back(read_sums_file(name));
     check(found.back().passes, name);
   }
   const bool shares = found.size() > 1 || (found.size() == 1 && found[0].share.of > 1 && !has_one_of_several());
@@ -75,6 +75,13 @@ bool RunSaver::has_anything() const {
                      [](const SavedPass& pass) { return pass.complete || !pass.notes.empty() || pass.step.done > 0; });
 }
 
+Sums RunSaver::hand_over(const PassPlan& plan, bool whole) {
+  const bool last = plans_.back() == &plan;
+  if (last && whole && saving_.keep) save();
+  Sums& found = pass(plan).found;
+  return writes() && !last ? found : std::move(found);  // files that later passes write have them, too
+}
+
 Checkpoint RunSaver::checkpoint() {
   Checkpoint c;
   if (!writes() || saving_.every_s <= 0.0) return c;
@@ -94,7 +101,9 @@ void RunSaver::save() {
   std::error_code ignored;  // what cannot be made cannot be written to
   const std::filesystem::path folder = std::filesystem::path(saving_.file).parent_path();
   if (!folder.empty()) std::filesystem::create_directories(folder, ignored);
-  text::replace_output_file(saving_.file, to_bytes(sums_));
+  text::replace_output_file(saving_.file, [this](text::OutputFile& file) {
+    write_sums(sums_, [&](std::string_view block) { file.put(block); });
+  });
   last_s_ = now();
   cost_s_ = last_s_ - start;
 }
@@ -106,7 +115,7 @@ bool is_saved(const std::string& file) {
 }
 
 SavedRun read_saved(const std::string& file) {
-  const SavedSums sums = from_bytes(text::read_input_file(file), file);
+  const SavedSums sums = read_sums_file(file);
   SavedRun run{sums.note, sums.share, true};
   for (const SavedPass& pass : sums.passes) run.complete = run.complete && pass.complete;
   return run;

@@ -25,17 +25,13 @@ class RunSaver {
   bool writes() const { return !saving_.file.empty(); }
   /// Whether any pass has found anything that the file could have.
   bool has_anything() const;
-  /// Whether the file is to have a pass when that is over.
-  bool keeps(const PassPlan& plan) const { return writes() && (saving_.keep || plans_.back() != &plan); }
+  /// The sums of a pass that is over, for its result. Where the file is to have them, they are in it before they go.
+  Sums hand_over(const PassPlan& plan, bool whole);
 
   /// When runners should stop for a moment to save, and how.
   Checkpoint checkpoint();
   /// Writes the file, if there is one. Throws Error(output).
   void save();
-  /// At the end of a whole run.
-  void end() {
-    if (saving_.keep) save();
-  }
 
  private:
   void check(const std::vector<SavedPass>& passes, const std::string& name) const;

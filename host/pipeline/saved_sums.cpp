@@ -1,21 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files of sums; see saved_sums.hpp. A file is: "clray sums", a version, the length and checksum of the rest, and the
-// rest. Numbers are little-endian. Pages of numbers are nothing, narrow or wide, as in memory.
+// Files of sums; see saved_sums.hpp. A file is: "clray sums", a version, the sums, and the checksum of these, which
+// stands at the end, since nothing that was written is gone back to. Numbers are little-endian. Pages of numbers are
+// nothing, narrow or wide, as in memory.
 #include "pipeline/saved_sums.hpp"
 
 #include <algorithm>
+#include <cstdio>
 #include <type_traits>
 
 #include "clray/error.hpp"
 #include "device/embedded.hpp"
 #include "pipeline/pass_buffers.hpp"
 #include "text/hash.hpp"
+#include "text/input_file.hpp"
 
 namespace clray {
 namespace {
 
-constexpr std::uint64_t kVersion = 1;
+constexpr std::uint64_t kVersion = 2;
 constexpr std::uint64_t kPage = 1024;  // numbers of a page of a file
+constexpr std::size_t kWord = 8;       // bytes of the version and of the checksum
 
 using text::BytesReader;
 using text::BytesWriter;
@@ -205,39 +209,48 @@ std::uint64_t fingerprint_of(const PassPlan& plan, const Geometry& geometry) {
   return state != 0 ? state : 1;
 }
 
-std::string to_bytes(const SavedSums& sums) {
-  constexpr std::size_t kHead = 24;
-  BytesWriter rest;
-  rest.raw(kSavedMagic);
-  rest.raw(std::string(kHead, '\0'));  // which is known at the end
-  rest.numbers(std::vector<std::uint32_t>{sums.share.number, sums.share.of});
-  rest.number(sums.note.size());
-  for (const std::string& word : sums.note) rest.text(word);
-  rest.number(sums.passes.size());
-  for (const SavedPass& pass : sums.passes) put(rest, pass);
-  std::string bytes = rest.take();
-  const std::size_t begin = kSavedMagic.size() + kHead;
+void write_sums(const SavedSums& sums, const std::function<void(std::string_view)>& put_bytes) {
   BytesWriter head;
+  head.raw(kSavedMagic);
   head.number(kVersion);
-  head.number(bytes.size() - begin);
-  head.number(checksum(bytes.data() + begin, bytes.size() - begin));
-  bytes.replace(kSavedMagic.size(), kHead, head.bytes());
-  return bytes;
+  put_bytes(head.bytes());
+  std::uint64_t sum = kFnvStart;
+  BytesWriter out([&](std::string_view block) {
+    sum = checksum(block.data(), block.size(), sum);
+    put_bytes(block);
+  });
+  out.numbers(std::vector<std::uint32_t>{sums.share.number, sums.share.of});
+  out.number(sums.note.size());
+  for (const std::string& word : sums.note) out.text(word);
+  out.number(sums.passes.size());
+  for (const SavedPass& pass : sums.passes) put(out, pass);
+  out.end();
+  BytesWriter seal;
+  seal.number(sum);
+  put_bytes(seal.bytes());
 }
 
-SavedSums from_bytes(std::string_view bytes, const std::string& name) {
-  if (bytes.substr(0, kSavedMagic.size()) != kSavedMagic)
+SavedSums read_sums(std::uint64_t size, const std::function<void(char*, std::size_t)>& get_bytes,
+                    const std::string& name) {
+  const std::uint64_t head_size = std::min<std::uint64_t>(size, kSavedMagic.size() + kWord);
+  std::string start(head_size, '\0');
+  get_bytes(start.data(), start.size());
+  if (start.substr(0, kSavedMagic.size()) != kSavedMagic)
     throw Error(ErrorCode::input, "these are no sums of clray", name);
-  BytesReader head(bytes.substr(kSavedMagic.size()), name);
+  BytesReader head(std::string_view(start).substr(kSavedMagic.size()), name);
   const std::uint64_t version = head.number();
   if (version != kVersion)
     throw Error(ErrorCode::input,
                 "these sums have version " + std::to_string(version) + ", expected " + std::to_string(kVersion), name);
-  const std::uint64_t length = head.number(), sum = head.number();
-  if (length != head.left()) head.fail();
-  const std::string_view rest = head.take(length);
-  if (checksum(rest.data(), rest.size()) != sum) head.fail();
-  BytesReader in(rest, name);
+  if (size < head_size + kWord) head.fail();
+  std::uint64_t sum = kFnvStart;
+  BytesReader in(
+      size - head_size - kWord,
+      [&](char* where, std::size_t count) {
+        get_bytes(where, count);
+        sum = checksum(where, count, sum);
+      },
+      name);
   SavedSums sums;
   const auto share = in.numbers<std::uint32_t>();
   if (share.size() != 2 || share[0] < 1 || share[0] > share[1]) in.fail();
@@ -247,7 +260,33 @@ SavedSums from_bytes(std::string_view bytes, const std::string& name) {
   sums.passes.resize(in.count(64));
   for (SavedPass& pass : sums.passes) pass = get_pass(in);
   if (in.left() != 0) in.fail();
+  std::string seal(kWord, '\0');
+  get_bytes(seal.data(), seal.size());
+  if (BytesReader(seal, name).number() != sum) in.fail();
   return sums;
+}
+
+std::string to_bytes(const SavedSums& sums) {
+  std::string bytes;
+  write_sums(sums, [&](std::string_view block) { bytes.append(block); });
+  return bytes;
+}
+
+SavedSums from_bytes(std::string_view bytes, const std::string& name) {
+  BytesReader all(bytes, name);
+  return read_sums(
+      bytes.size(), [&](char* where, std::size_t count) { all.take(count).copy(where, count); }, name);
+}
+
+SavedSums read_sums_file(const std::string& file) {
+  const text::InputFile in = text::open_input(file);
+  const std::uint64_t size = text::size_of(in);
+  return read_sums(
+      size,
+      [&](char* where, std::size_t count) {
+        if (std::fread(where, 1, count, in.get()) != count) throw Error(ErrorCode::input, "the file is damaged", file);
+      },
+      file);
 }
 
 bool fits(const Sums& sums, const SumLayout& layout) {

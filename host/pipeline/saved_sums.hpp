@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -70,10 +71,18 @@ Sums get_sums(text::BytesReader& in);
 /// What a file begins with.
 constexpr std::string_view kSavedMagic = "clray sums\n";
 
-/// The bytes of a file, with a version and a checksum.
+/// A file of sums, with a version and a checksum, given to `put` a block at a time: sums may take gigabytes.
+void write_sums(const SavedSums& sums, const std::function<void(std::string_view)>& put);
+/// Reads a file of sums of `size` bytes, of which `get(where, count)` puts the next ones somewhere. Throws Error(input,
+/// name) for bytes of something else, of another version, or damaged ones, and takes no more memory than these ask for.
+SavedSums read_sums(std::uint64_t size, const std::function<void(char*, std::size_t)>& get, const std::string& name);
+
+/// The same to and from bytes in memory.
 std::string to_bytes(const SavedSums& sums);
-/// Throws Error(input, name) for bytes of something else, of another version, or damaged ones.
 SavedSums from_bytes(std::string_view bytes, const std::string& name);
+
+/// The same from a file. Throws Error(input, file).
+SavedSums read_sums_file(const std::string& file);
 
 /// Whether sums have the sizes of a layout: what a file claims need not fit.
 bool fits(const Sums& sums, const SumLayout& layout);

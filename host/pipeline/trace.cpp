@@ -82,7 +82,6 @@ class Tracer {
       if (error.code() != ErrorCode::device) throw;
       keep_before(error);
     }
-    if (!result_.partial) saver_.end();
     end(geometry, start);
     return std::move(result_);
   }

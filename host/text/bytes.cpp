@@ -2,11 +2,19 @@
 // See bytes.hpp.
 #include "text/bytes.hpp"
 
+#include <algorithm>
 #include <cstring>
 
 #include "clray/error.hpp"
 
 namespace clray::text {
+
+void BytesWriter::give_blocks() {
+  std::size_t given = 0;
+  for (; out_.size() - given >= kBlockOfBytes; given += kBlockOfBytes)
+    sink_(std::string_view(out_).substr(given, kBlockOfBytes));
+  out_.erase(0, given);
+}
 
 void BytesWriter::real(double value) {
   std::uint64_t bits;
@@ -16,7 +24,7 @@ void BytesWriter::real(double value) {
 
 void BytesWriter::text(std::string_view value) {
   number(value.size());
-  out_.append(value);
+  raw(value);
 }
 
 void BytesWriter::reals(const std::vector<double>& values) {
@@ -29,10 +37,23 @@ void BytesReader::fail() const {
 }
 
 std::string_view BytesReader::take(std::uint64_t bytes) {
-  if (bytes > bytes_.size()) fail();
+  if (bytes > left()) fail();
+  if (bytes > bytes_.size()) refill(bytes);
   const std::string_view taken = bytes_.substr(0, bytes);
   bytes_.remove_prefix(bytes);
   return taken;
+}
+
+/// Behind it, at least so many bytes are here. Blocks but the last have a multiple of eight bytes, as those written.
+void BytesReader::refill(std::uint64_t bytes) {
+  std::string block(bytes_);
+  const std::uint64_t missing = bytes - bytes_.size();
+  const std::uint64_t more = std::min(behind_, (missing + kBlockOfBytes - 1) / kBlockOfBytes * kBlockOfBytes);
+  block.resize(bytes_.size() + more);
+  source_(block.data() + bytes_.size(), more);
+  behind_ -= more;
+  block_ = std::move(block);
+  bytes_ = block_;
 }
 
 std::uint64_t BytesReader::number(int bytes) {
@@ -55,7 +76,7 @@ std::string BytesReader::text() {
 
 std::uint64_t BytesReader::count(std::uint64_t bytes_each) {
   const std::uint64_t things = number();
-  if (things > bytes_.size() / bytes_each) fail();
+  if (things > left() / bytes_each) fail();
   return things;
 }
 

@@ -52,11 +52,15 @@ InputFile open_input(const std::string& path) {
   return InputFile(file);
 }
 
-std::string read_input_file(const std::string& path) {
-  const InputFile file = open_input(path);
+std::uint64_t size_of(const InputFile& file) {
   struct stat status {};
   ::fstat(::fileno(file.get()), &status);
-  std::string content(static_cast<std::size_t>(status.st_size) + 1, '\0');  // one more, to meet the end
+  return static_cast<std::uint64_t>(status.st_size);
+}
+
+std::string read_input_file(const std::string& path) {
+  const InputFile file = open_input(path);
+  std::string content(size_of(file) + 1, '\0');  // one more, to meet the end
   std::size_t done = 0;
   while (true) {
     done += std::fread(&content[done], 1, content.size() - done, file.get());

@@ -3,6 +3,7 @@
 // as /dev/zero never ends.
 #pragma once
 
+#include <cstdint>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -19,6 +20,9 @@ using InputFile = std::unique_ptr<std::FILE, FileCloser>;
 
 /// Opens a regular file. Throws Error(input) with the path as context.
 InputFile open_input(const std::string& path);
+
+/// Bytes of an open regular file.
+std::uint64_t size_of(const InputFile& file);
 
 /// All bytes of a regular file. Throws Error(input) with the path as context.
 std::string read_input_file(const std::string& path);

@@ -59,17 +59,21 @@ void write_output_file(const std::string& path, std::string_view bytes) {
   file.close();
 }
 
-void replace_output_file(const std::string& path, std::string_view bytes) {
+void replace_output_file(const std::string& path, const std::function<void(OutputFile&)>& write) {
   remove_unfinished(path);
   Unfinished beside;
   if (const int code = beside.make(path, Unfinished::Kind::file)) fail_output("write", path, code);
   OutputFile file(beside.path());
-  file.put(bytes);
+  write(file);
   file.sync();
   file.close();
   if (::rename(beside.path().c_str(), path.c_str()) != 0) fail_output("write", path, errno);
   const std::size_t slash = path.rfind('/');
   sync_to_disk(slash == std::string::npos ? "." : path.substr(0, slash + 1));
+}
+
+void replace_output_file(const std::string& path, std::string_view bytes) {
+  replace_output_file(path, [&](OutputFile& file) { file.put(bytes); });
 }
 
 std::string folder_fault(const std::string& folder) {

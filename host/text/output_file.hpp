@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdio>
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -39,8 +40,10 @@ std::string folder_fault(const std::string& folder);
 /// Forces a file, or the entries of a folder, to disk. Throws Error(output).
 void sync_to_disk(const std::string& path);
 
-/// Puts a file of these bytes at `path`, whole: it is written beside it (see Unfinished) and forced to disk before it
-/// takes the place. Throws Error(output); what stood there is then still there.
+/// Puts a file at `path`, whole: `write` writes it beside it (see Unfinished), and it is forced to disk before it takes
+/// the place. Throws Error(output), or what `write` throws; what stood there is then still there.
+void replace_output_file(const std::string& path, const std::function<void(OutputFile&)>& write);
+/// The same of a file of these bytes.
 void replace_output_file(const std::string& path, std::string_view bytes);
 
 /// Removes a file that a library left unfinished.

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <thread>
 
 #include "cli/program.hpp"
@@ -87,6 +88,29 @@ TEST_CASE("large sums are nowhere twice, and --memory expects no less than a run
     CHECK(outcome.peak_MB < run.most_MB);
     CHECK(outcome.peak_MB < expected_MB(refused.err));
   }
+}
+
+TEST_CASE("files of sums are written and read in parts") {
+  // The file has 188 MB. A run with it takes what one without takes, see above; whole in memory, it took that to 700 MB.
+  const Scratch scratch;
+  spit(scratch / "square.obj", square());
+  spit(scratch / "scene.toml", pulse());
+  const std::vector<std::string> words{"--device", "cpu",   "--no-plots", "--checkpoint", "0",      "--method",
+                                       "points",   "--out", "out",        "--keep-sums",  "--rays", "65536"};
+  const auto with = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> all = words;
+    all.insert(all.end(), more.begin(), more.end());
+    return clray(scratch, all);
+  };
+  REQUIRE(with({"scene.toml"}).status == 0);
+  const Outcome written = with({"scene.toml"});
+  REQUIRE(written.status == 0);
+  REQUIRE(std::filesystem::file_size(scratch / "out.sums") > 150'000'000);
+  const Outcome read = with({"--resume", "out"});
+  REQUIRE(read.status == 0);
+  MESSAGE("written: " << written.peak_MB << " MB, read: " << read.peak_MB << " MB");
+  CHECK(written.peak_MB < 520.0);
+  CHECK(read.peak_MB < 520.0);
 }
 
 TEST_CASE("memory is flat while a run goes on") {

@@ -49,17 +49,18 @@ void use(const ephemeris::Trajectory& t) {
   for (const double s : {first, last, first + 0.5 * (last - first)}) t.at(s);
 }
 
-/// A file of sums whose head is made right, so that what is behind the checksum is read.
+/// A file of sums whose version and checksum are made right, so that what is between them is believed.
 void read_sums(const std::string& path) {
-  constexpr std::size_t kHead = kSavedMagic.size() + 24;  // magic, version, length, checksum
+  constexpr std::size_t kHead = kSavedMagic.size() + 8, kSeal = 8;
   std::string bytes = text::read_input_file(path);
-  if (bytes.size() >= kHead) {
-    const std::string rest = bytes.substr(kHead);
-    text::BytesWriter head;
-    head.number(1);
-    head.number(rest.size());
-    head.number(checksum(rest.data(), rest.size()));
-    bytes = std::string(kSavedMagic) + head.bytes() + rest;
+  if (bytes.size() >= kHead + kSeal) {
+    const std::string sums = bytes.substr(kHead, bytes.size() - kHead - kSeal);
+    text::BytesWriter out;
+    out.raw(kSavedMagic);
+    out.number(2);
+    out.raw(sums);
+    out.number(checksum(sums.data(), sums.size()));
+    bytes = out.take();
   }
   from_bytes(bytes, path);
 }

@@ -2,6 +2,7 @@
 // Files of sums: what is written is read, and no damaged byte, no cut and no lie about a length is taken or harms.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <random>
 
 #include "clray/error.hpp"
@@ -70,13 +71,16 @@ bool refused(const std::string& bytes) {
   return false;
 }
 
-/// Bytes with a right head around any content.
-std::string with_head(const std::string& rest) {
-  text::BytesWriter head;
-  head.number(1);
-  head.number(rest.size());
-  head.number(checksum(rest.data(), rest.size()));
-  return std::string(kSavedMagic) + head.bytes() + rest;
+constexpr std::size_t kHead = kSavedMagic.size() + 8, kSeal = 8;  // before the sums: magic, version; behind: checksum
+
+/// Bytes with a right checksum behind any content.
+std::string sealed(const std::string& sums) {
+  text::BytesWriter out;
+  out.raw(kSavedMagic);
+  out.number(2);
+  out.raw(sums);
+  out.number(checksum(sums.data(), sums.size()));
+  return out.take();
 }
 
 }  // namespace
@@ -103,6 +107,45 @@ TEST_CASE("sums are read as they were written, wide, narrow and none") {
   SumLayout other = layout();
   other.shape.views = 1;
   CHECK_FALSE(fits(b, other));
+}
+
+TEST_CASE("sums of many blocks of a file are read as they were written, and a byte of any block matters") {
+  SavedSums sums = some();
+  SumLayout large = layout();
+  large.blocks.clear();
+  large.values = large.counts = 0;
+  TableSum weight;
+  weight.rows = SumRows::connection;
+  weight.scale = SumScale::weight;
+  large.add(weight, 100'000);  // 2 views, 3 replicates: 600,000 numbers, from 4.8 MB on
+  sums.passes[1].found = Sums(large);
+  std::mt19937_64 random(8);
+  Sums& found = sums.passes[1].found;
+  for (std::uint64_t k = 0; k < found.values.size(); ++k) {
+    const auto value = static_cast<Sum>(static_cast<std::int64_t>(random()));
+    found.values.set(k, k / 1024 % 5 == 3 ? value * (Sum{1} << 50) : value);
+  }
+  sums.note.emplace_back(3 * text::kBlockOfBytes / 2, 'n');  // a word longer than a block
+  std::string bytes;
+  std::size_t most = 0;
+  write_sums(sums, [&](std::string_view block) {
+    most = std::max(most, block.size());
+    bytes.append(block);
+  });
+  CHECK(most == text::kBlockOfBytes);
+  REQUIRE(bytes.size() > 6 * text::kBlockOfBytes);
+  const SavedSums again = from_bytes(bytes, "a file");
+  CHECK(again.note == sums.note);
+  bool same = fits(again.passes[1].found, large) == fits(found, large);
+  for (std::uint64_t k = 0; k < found.values.size(); ++k)
+    same = same && found.values[k] == again.passes[1].found.values[k];
+  CHECK(same);
+  CHECK((to_bytes(again) == bytes));
+  for (int k = 0; k < 40; ++k) {
+    std::string bad = bytes;
+    bad[random() % bad.size()] ^= static_cast<char>(1 << random() % 8);
+    CHECK(refused(bad));
+  }
 }
 
 TEST_CASE("sums add: values and counts by adding, the greatest by the greater") {
@@ -148,7 +191,7 @@ TEST_CASE("a file of sums with any byte changed, or cut anywhere, is refused") {
 
 TEST_CASE("a file of sums that lies, with a right checksum, is refused or read, and takes no more memory than it has") {
   const std::string whole = to_bytes(some());
-  const std::string rest = whole.substr(kSavedMagic.size() + 24);
+  const std::string rest = whole.substr(kHead, whole.size() - kHead - kSeal);
   std::mt19937_64 random(4);
   int taken = 0;
   for (int k = 0; k < 2000; ++k) {
@@ -158,7 +201,7 @@ TEST_CASE("a file of sums that lies, with a right checksum, is refused or read, 
     for (std::size_t b = 0; b < 8 && at + b < bad.size(); ++b) bad[at + b] = static_cast<char>(lie >> (8 * b));
     if (k % 5 == 0) bad.resize(random() % bad.size());
     try {
-      from_bytes(with_head(bad), "a file");
+      from_bytes(sealed(bad), "a file");
       ++taken;
     } catch (const Error& error) {
       CHECK(error.code() == ErrorCode::input);
