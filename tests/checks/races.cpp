@@ -9,6 +9,7 @@
 #include <set>
 #include <string>
 
+#include "checks/planted.hpp"
 #include "clray/device.hpp"
 #include "clray/error.hpp"
 #include "device/buffers.hpp"
@@ -77,11 +78,18 @@ std::vector<ProgramContent> rows() {
   return all;
 }
 
+/// A program, and what of its first hits is solved elsewhere.
+struct Program {
+  ProgramContent content;
+  bool first_solved = false, push_solved = false;
+};
+
 class Draw {
  public:
   explicit Draw(std::uint32_t seed) : random_(seed) {}
-  ProgramContent content() {
-    ProgramContent c;
+  Program program() {
+    Program p;
+    ProgramContent& c = p.content;
     c.models = some(kModels);
     c.shapes = some(kShapes);
     c.detectors = some(kBeams);
@@ -98,7 +106,9 @@ class Draw {
       c.strata = c.sobol && !one_in(4);
     }
     if (!packets && one_in(4)) make_picture(&c, kPictures[random_() % kPictures.size()], one_in(2));
-    return c;
+    p.first_solved = c.curved || one_in(3);
+    p.push_solved = one_in(3);
+    return p;
   }
 
  private:
@@ -115,13 +125,13 @@ class Draw {
   std::mt19937 random_;
 };
 
-void trace(OpenedDevice& opened, const ProgramContent& content, const KernelFiles& files) {
-  PassPlan plan = built_in_scene(content).plan;
-  if (content.curved) {
-    plan.program.options.defines["CLRAY_SKIP_FIRST"] = "1";
-    plan.program.options.defines["CLRAY_CURVED"] = "1";
-  }
-  run_traced_self_test(opened, plan, content.specialised, files);
+void trace(OpenedDevice& opened, const Program& program, const KernelFiles& files) {
+  PassPlan plan = built_in_scene(program.content).plan;
+  auto& defines = plan.program.options.defines;
+  if (program.content.curved) defines["CLRAY_CURVED"] = "1";
+  if (program.first_solved) defines["CLRAY_SKIP_FIRST"] = "1";
+  if (program.push_solved) defines["CLRAY_SKIP_PUSH"] = "1";
+  run_traced_self_test(opened, plan, program.content.specialised, files);
 }
 
 /// Every program of exact.cl: with and without windows, observers at the source and elsewhere, and sampling.
@@ -165,30 +175,20 @@ std::set<std::string> missing(const OpenedDevice& opened) {
 
 /// A program with one fault, which the checks of the device must report.
 void run_fault(OpenedDevice& opened, const std::string& fault) {
-  const bool race = fault == "race";
-  KernelFiles files = embedded_kernels();
-  std::string& text = files.at("detector/delay.cl");
-  const std::string right = race ? "atomic_inc(g->counts + sum_row(g, d, CLRAY_DELAY_HITS, row) + bin);"
-                                 : "const u32 bins = (u32)settings[0];";
-  const std::string wrong = race ? "g->counts[sum_row(g, d, CLRAY_DELAY_HITS, row) + bin] += 1u;"
-                                 : "u32 never[3];\n  const u32 bins = (u32)settings[0] + never[row_of(tally) & 1u];";
-  const std::size_t at = text.find(right);
-  if (at == std::string::npos) throw Error(ErrorCode::bug, "the line to be replaced is not there", right);
-  text.replace(at, right.size(), wrong);
-  if (!race) text.insert(text.find("static void"), "static u32 row_of(const Tally* t) { return t->view; }\n\n");
-  trace(opened, simple("sphere", "lambert", "delay"), files);
+  trace(opened, {simple("sphere", "lambert", "delay")}, clray_test::with_planted_fault(fault == "race"));
 }
 
 void run_all(Device& device, int drawn) {
   OpenedDevice& opened = device.impl().devices.front();
   const KernelFiles files = embedded_kernels();  // of a copy nothing is remembered
-  std::vector<ProgramContent> contents = rows();
+  std::vector<Program> programs;
+  for (const ProgramContent& row : rows()) programs.push_back({row});
   Draw draw(18);
-  for (int k = 0; k < drawn; ++k) contents.push_back(draw.content());
-  for (std::size_t k = 0; k < contents.size(); ++k) {
+  for (int k = 0; k < drawn; ++k) programs.push_back(draw.program());
+  for (std::size_t k = 0; k < programs.size(); ++k) {
     std::printf("program %zu\n", k);
     std::fflush(stdout);
-    trace(opened, contents[k], files);
+    trace(opened, programs[k], files);
   }
   for (int variant = 0; variant < 16; ++variant) solve(opened, variant);
   shoot(device);

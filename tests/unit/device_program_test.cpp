@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "checks/planted.hpp"
+#include "clray/error.hpp"
 #include "device/embedded.hpp"
 #include "device/platforms.hpp"
 #include "device/program.hpp"
@@ -186,4 +188,8 @@ TEST_CASE("the embedded files are the files of kernels/, the tables can be read"
   CHECK(std::find(ids.begin(), ids.end(), "lambert") == ids.begin());
   CHECK(table_row_ids("shape", files).front() == "triangle");
   CHECK(table_row_ids("detector", files).front() == "intensity");
+}
+
+TEST_CASE("the faults that checks of devices plant have their lines in the kernels") {
+  for (const bool race : {false, true}) CHECK_NOTHROW(clray_test::with_planted_fault(race));
 }
