@@ -267,10 +267,11 @@ static u32 carry_piece(const Exact* g, u32 own, const Fragment* f) {
     CLRAY_GLOBAL ClrayPiece* piece = g->lit + at + k;
     piece->face = own;
     piece->off = 0.0;
-    piece->corners = at + count <= room ? part[k].corners : 0u;  // of a piece in two there is room for all or none
+    const u32 corners = at + count <= room ? part[k].corners : 0u;  // of a piece in two there is room for all or none
+    piece->corners = corners;
     for (u32 i = 0; i < CLRAY_PIECE_CORNERS; ++i) {
-      piece->x[i] = i < piece->corners ? part[k].x[i] : 0.0;
-      piece->y[i] = i < piece->corners ? part[k].y[i] : 0.0;
+      piece->x[i] = i < corners ? part[k].x[i] : 0.0;
+      piece->y[i] = i < corners ? part[k].y[i] : 0.0;
     }
   }
   return at + count <= room ? 1u : 0u;
