@@ -7,6 +7,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "body/face_pieces.hpp"
 #include "body/in_parts.hpp"
 #include "body/mesh_convexity.hpp"
 #include "body/portable_tables.hpp"
@@ -19,6 +20,8 @@
 
 namespace clray {
 namespace {
+
+constexpr std::uint32_t kNowhere = 0xffffffffu;
 
 /// Rotation about a unit axis by an angle (Rodrigues), by rows.
 std::array<double, 9> rotation_about(const Vec3& axis, double angle) {
@@ -49,7 +52,7 @@ std::vector<std::tuple<std::string, std::vector<double>, std::vector<double>>> s
 
 class Packer {
  public:
-  Packer(const Scene& scene, bool trees) : scene_(scene) { g_.trees = trees; }
+  Packer(const Scene& scene, TreeFaces faces) : scene_(scene), faces_(faces) { g_.trees = faces != TreeFaces::none; }
 
   Geometry pack() {
     make_parts();
@@ -213,26 +216,6 @@ class Packer {
     }
   }
 
-  Box box_of(const RawPrimitive& raw) const {
-    Box box;
-    const double* d = numbers_.data() + raw.data;
-    if (raw.size == 9) {
-      for (int k = 0; k < 3; ++k) box.add(Point{{d[3 * k], d[3 * k + 1], d[3 * k + 2]}});
-      return box;
-    }
-    for (int axis = 0; axis < 3; ++axis) {
-      // Support along +axis and -axis: the rotation's columns carry the axis into the local frame.
-      const double u[3] = {d[axis], d[3 + axis], d[6 + axis]}, v[3] = {-u[0], -u[1], -u[2]};
-      const double s = d[CLRAY_SHAPE_SCALE], o = d[CLRAY_SHAPE_ORIGIN + axis];
-      const double high = s * shape_support_of(static_cast<int>(raw.shape), d + CLRAY_SHAPE_KEYS, u);
-      const double low = s * shape_support_of(static_cast<int>(raw.shape), d + CLRAY_SHAPE_KEYS, v);
-      const double pad = 1e-15 * (std::fabs(o) + std::fabs(low) + std::fabs(high));  // rounding of the two products
-      box.low[axis] = o - low - pad;
-      box.high[axis] = o + high + pad;
-    }
-    return box;
-  }
-
   // Places the primitives of each part in the order of its tree, or, without one, in that of their ranks.
   void place() {
     const std::vector<TableRow>& rows = table("shape");
@@ -245,7 +228,7 @@ class Packer {
       for (std::uint32_t i = 0; i < raw_.size(); ++i) {
         if (raw_[i].part != p) continue;
         members.push_back(i);
-        g_.parts[p].box.add(box_of(raw_[i]));
+        g_.parts[p].box.add(box_of(raw_[i], numbers_));
       }
       if (members.empty()) continue;
       if (!g_.trees) {
@@ -253,17 +236,28 @@ class Packer {
         order.insert(order.end(), members.begin(), members.end());
         continue;
       }
-      LinearBvh tree = build_bvh(members.size(), [&](std::size_t i) { return box_of(raw_[members[i]]); });
+      const FacePieces pieces({members.size(), [&](std::size_t i) { return box_of(raw_[members[i]], numbers_); },
+                               [&](std::size_t i) { return corners_of(raw_[members[i]], numbers_); }},
+                              g_.parts[p].box, faces_ == TreeFaces::pieces);
+      LinearBvh tree = build_bvh(pieces.count(), [&](std::size_t k) { return pieces.box(k); });
       g_.parts[p].root = static_cast<std::uint32_t>(g_.nodes.size());
       g_.parts[p].frame = tree.frame;
       g_.stack_needed = std::max(g_.stack_needed, tree.stack_needed);
-      for (const std::uint32_t position : tree.order) {
-        const std::uint32_t member = members[position];
-        append(raw_[member], member, rows[raw_[member].shape].faces, used);
-        order.push_back(member);
+      const auto first_leaf = static_cast<std::uint32_t>(g_.leaves.size());
+      std::vector<std::uint32_t> place(members.size(), kNowhere);  // of each member, once a leaf holds it
+      for (const std::uint32_t box : tree.order) {
+        const std::uint32_t k = pieces.face(box), member = members[k];
+        if (place[k] == kNowhere) {
+          place[k] = static_cast<std::uint32_t>(g_.primitives.size());
+          append(raw_[member], member, rows[raw_[member].shape].faces, used);
+          order.push_back(member);
+        }
+        g_.leaves.push_back(place[k]);
       }
-      append_tree(std::move(tree), static_cast<std::uint32_t>(g_.primitives.size() - members.size()), &g_.nodes);
+      append_tree(std::move(tree), first_leaf, &g_.nodes);
     }
+    // Without pieces a leaf's places are those of its primitives.
+    if (g_.leaves.size() == g_.primitives.size()) g_.leaves = {};
     g_.shapes = in_order(std::move(numbers_), raw_, order);
     append_planes();
     for (std::size_t row = 0; row < used.size(); ++row) {
@@ -332,6 +326,7 @@ class Packer {
   }
 
   const Scene& scene_;
+  const TreeFaces faces_;
   Geometry g_;
   std::vector<RawPrimitive> raw_;
   std::vector<double> numbers_;
@@ -367,8 +362,8 @@ std::vector<std::uint32_t> material_ranks(const Scene& scene) {
   return rank;
 }
 
-Geometry build_geometry(const Scene& scene, bool trees) {
-  return Packer(scene, trees).pack();
+Geometry build_geometry(const Scene& scene, TreeFaces faces) {
+  return Packer(scene, faces).pack();
 }
 
 Point RigidMotion::back(const Point& part) const {

@@ -41,6 +41,8 @@ struct Geometry {
   std::vector<ClrayPrimitive> primitives;
   std::vector<double> shapes;
   std::vector<ClrayNode> nodes;
+  /// What the leaves hold, where a face stands in several: numbers of primitives. Empty: each primitive in its order.
+  std::vector<std::uint32_t> leaves;
   std::vector<Part> parts;      ///< static part first, if there is one
   std::vector<int> shape_rows;  ///< rows of shape.def in use, ascending
   std::vector<std::uint32_t> part_of_component;
@@ -66,9 +68,11 @@ struct Geometry {
 /// material matters to the geometry.
 std::vector<std::uint32_t> material_ranks(const Scene& scene);
 
-/// Builds everything that does not depend on the view; without `trees`, what needs no rays. Throws Error(input) if
-/// nothing can be hit.
-Geometry build_geometry(const Scene& scene, bool trees = true);
+/// What trees hold. Without them no ray can be traced.
+enum class TreeFaces { none, whole, pieces };
+
+/// Builds everything that does not depend on the view. Throws Error(input) if nothing can be hit.
+Geometry build_geometry(const Scene& scene, TreeFaces faces = TreeFaces::pieces);
 
 /// Where a hinged part stands in a view.
 RigidMotion part_motion(const Scene& scene, const Part& part, const Vec3& source, const Vec3& observer);

@@ -74,6 +74,30 @@ std::uint32_t parts_of(const RawPrimitive& raw) {
   return raw.size == kTriangleSize ? 1u : kMostShapeParts;
 }
 
+Box box_of(const RawPrimitive& raw, const std::vector<double>& numbers) {
+  Box box;
+  const double* d = numbers.data() + raw.data;
+  if (raw.size == kTriangleSize) {
+    for (int k = 0; k < 3; ++k) box.add(std::array<double, 3>{{d[3 * k], d[3 * k + 1], d[3 * k + 2]}});
+    return box;
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    // Support along +axis and -axis: the rotation's columns carry the axis into the local frame.
+    const double u[3] = {d[axis], d[3 + axis], d[6 + axis]}, v[3] = {-u[0], -u[1], -u[2]};
+    const double s = d[CLRAY_SHAPE_SCALE], o = d[CLRAY_SHAPE_ORIGIN + axis];
+    const double high = s * shape_support_of(static_cast<int>(raw.shape), d + CLRAY_SHAPE_KEYS, u);
+    const double low = s * shape_support_of(static_cast<int>(raw.shape), d + CLRAY_SHAPE_KEYS, v);
+    const double pad = 1e-15 * (std::fabs(o) + std::fabs(low) + std::fabs(high));  // rounding of the two products
+    box.low[axis] = o - low - pad;
+    box.high[axis] = o + high + pad;
+  }
+  return box;
+}
+
+const double* corners_of(const RawPrimitive& raw, const std::vector<double>& numbers) {
+  return raw.size == kTriangleSize ? numbers.data() + raw.data : nullptr;
+}
+
 namespace {
 
 /// Whether all are triangles whose numbers follow one another.

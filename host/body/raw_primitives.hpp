@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "body/bvh.hpp"
 #include "body/shared_planes.hpp"
 
 namespace clray {
@@ -20,6 +21,11 @@ struct RawPrimitive {
 
 /// Parts that a primitive's list of planes has room for.
 std::uint32_t parts_of(const RawPrimitive& raw);
+
+/// A box around a primitive, of which the numbers of all are given.
+Box box_of(const RawPrimitive& raw, const std::vector<double>& numbers);
+/// The nine numbers of a triangle; null for an analytic shape.
+const double* corners_of(const RawPrimitive& raw, const std::vector<double>& numbers);
 
 /// The numbers of primitives in another order: those of raw[order[0]] first. Some may be left out.
 std::vector<double> in_order(std::vector<double> numbers, const std::vector<RawPrimitive>& raw,

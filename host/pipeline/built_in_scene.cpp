@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numeric>
 
 #include "clray/error.hpp"
 #include "scene/tables.hpp"
@@ -170,6 +171,7 @@ ProgramContent content_of(const PassPlan& plan, bool specialised) {
   content.hinged = has("CLRAY_INSTANCED");
   content.one_sided = has("CLRAY_ONE_SIDED");
   content.shared_planes = has("CLRAY_PLANES");
+  content.pieces = has("CLRAY_PIECES");
   content.curved = has("CLRAY_CURVED");
   content.specialised = specialised;
   content.walk = table("walk")[static_cast<std::size_t>(options.walk)].name;
@@ -177,6 +179,13 @@ ProgramContent content_of(const PassPlan& plan, bool specialised) {
 }
 
 namespace {
+
+/// A program that reads what leaves hold reads it here, too.
+void list_leaves(Geometry* geometry) {
+  if (!geometry->leaves.empty()) return;
+  geometry->leaves.resize(geometry->primitives.size());
+  std::iota(geometry->leaves.begin(), geometry->leaves.end(), 0u);
+}
 
 /// As if every other primitive were solved.
 void leave_half_unsolved(const Geometry& geometry, PassPlan* plan) {
@@ -209,7 +218,8 @@ BuiltInScene built_in_scene(const ProgramContent& content) {
                                          : SamplerKind::sobol;
   scene.trace.specialise = content.specialised;
   scene.trace.walk = content.walk;
-  BuiltInScene built{build_geometry(scene), {}};
+  BuiltInScene built{build_geometry(scene, content.pieces ? TreeFaces::pieces : TreeFaces::whole), {}};
+  if (content.pieces) list_leaves(&built.geometry);
   for (ClrayPrimitive& primitive : built.geometry.primitives) primitive.component %= content.components;
   // Only the first, which may be hinged, is asked for again; their number is that of the sums.
   scene.components.resize(content.components, scene.components.back());

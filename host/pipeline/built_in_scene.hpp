@@ -16,7 +16,7 @@ struct ProgramContent {
   std::vector<std::string> models, shapes, detectors;  ///< scene-file names of rows
   std::uint32_t lanes = 1, connections = 1, components = 1;
   bool pixels = false, mirrors = false, scatter = false, sobol = true, strata = true;
-  bool hinged = false, one_sided = false, shared_planes = false;
+  bool hinged = false, one_sided = false, shared_planes = false, pieces = false;
   bool curved = false, specialised = true;
   std::string walk = "plain";  ///< scene-file name
 };

@@ -11,7 +11,8 @@ namespace {
 
 /// Whether a buffer holds what the geometry alone decides.
 bool of_the_body(const std::string& buffer, const PassPlan& plan) {
-  return buffer == "primitives" || buffer == "shapes" || (buffer == "nodes" && plan.beams.nodes.empty());
+  return buffer == "primitives" || buffer == "shapes" || buffer == "leaves" ||
+         (buffer == "nodes" && plan.beams.nodes.empty());
 }
 
 }  // namespace

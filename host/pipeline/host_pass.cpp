@@ -85,10 +85,11 @@ Sums trace_on_host(const PassPlan& plan, const Geometry& geometry, std::uint32_t
   std::vector<u32> counts(in.counts.count);
   const std::uint64_t items = parts_of(points, chunk) * plan.beams.views.size() * streams_of(plan);
   for (global_id = 0; global_id < items; ++global_id) {
-    clray_trace(in.pass.data, in.views.data, in.asked.data, in.connections.data, in.nodes.data, in.primitives.data,
-                in.shapes.data, in.instances.data, in.materials.data, in.tables.data, in.directions.data,
-                in.detectors.data, in.blocks.data, in.settings.data, in.strata.data, in.unsolved.data, sums.data(),
-                wide.data(), counts.data(), counters.data(), 0, static_cast<u32>(items), 0, points, chunk);
+    clray_trace(in.pass.data, in.views.data, in.asked.data, in.connections.data, in.nodes.data, in.leaves.data,
+                in.primitives.data, in.shapes.data, in.instances.data, in.materials.data, in.tables.data,
+                in.directions.data, in.detectors.data, in.blocks.data, in.settings.data, in.strata.data,
+                in.unsolved.data, sums.data(), wide.data(), counts.data(), counters.data(), 0, static_cast<u32>(items),
+                0, points, chunk);
   }
   Sums out(plan.layout);
   for (std::uint64_t& view : out.points) view = points;

@@ -33,7 +33,7 @@ bool is_wide(const PassPlan& plan) {
 /// What a device is given to read. One that works in the host's memory reads the body and strata where they stand.
 double tables_bytes(const PassPlan& plan, const Geometry& geometry, bool shared) {
   PassBuffers in(plan, geometry);
-  if (shared) in.primitives.count = in.shapes.count = in.nodes.count = in.strata.count = 0;
+  if (shared) in.primitives.count = in.shapes.count = in.nodes.count = in.leaves.count = in.strata.count = 0;
   double bytes = 0.0;
 #define CLRAY_ADD(type, name) \
   if (in.name.data != nullptr) bytes += static_cast<double>(in.name.count * sizeof(*in.name.data));

@@ -35,6 +35,7 @@ PassBuffers::PassBuffers(const PassPlan& plan, const Geometry& geometry) {
   asked = all_of(own_asked_);
   connections = all_of(plan.beams.connections);
   nodes = all_of(plan.beams.nodes.empty() ? geometry.nodes : plan.beams.nodes);
+  leaves = all_of(geometry.leaves);
   primitives = all_of(geometry.primitives);
   shapes = all_of(geometry.shapes);
   instances = all_of(plan.beams.instances);

@@ -37,7 +37,7 @@ const Geometry& Preparation::body(const Scene& scene, bool trees) {
   if (!kept || kept->material_ranks != ranks || !same(kept->components, scene.components)) {
     kept.reset();
     drop_passes();
-    kept = Kept{scene.components, std::move(ranks), build_geometry(scene, trees)};
+    kept = Kept{scene.components, std::move(ranks), build_geometry(scene, trees ? TreeFaces::pieces : TreeFaces::none)};
   }
   if (on_devices_ != &kept->geometry) drop_passes();
   on_devices_ = &kept->geometry;

@@ -193,7 +193,8 @@ std::vector<const PassPlan*> passes_of(const std::vector<PassPlan>& plans) {
 
 std::uint64_t fingerprint_of(const PassPlan& plan, const Geometry& geometry) {
   PassBuffers in(plan, geometry);
-  in.nodes = {};  // how faces are found has no say in what is found
+  in.nodes = {};
+  in.leaves = {};  // how faces are found has no say in what is found
   std::uint64_t state = kernels_sum();
 #define CLRAY_ADD(type, name) state = sum_of(state, in.name.data, in.name.data != nullptr ? in.name.count : 0);
   CLRAY_BUFFERS(CLRAY_ADD)

@@ -258,6 +258,12 @@ class Specialiser {
            "every material reflects from both sides");
     decide("CLRAY_PLANES", geometry_.shared_planes, "faces in one plane",
            "some overlap: the one that faces the ray is hit", "no faces overlap in one plane");
+    const bool pieces = !geometry_.leaves.empty();  // a generic program has no list to read where the body has none
+    define("CLRAY_PIECES", pieces ? 1 : 0);
+    if (pieces)
+      out_.kept.push_back("faces in several leaves: some are long and lie askew, and the tree holds pieces of them");
+    else
+      out_.left_out.push_back("faces in several leaves: the tree holds every face once");
     decide("CLRAY_INSTANCED", moving_parts(), "moving parts and their transforms", "a component is hinged",
            "no component is hinged; fixed transforms are done once on the host");
     decide("CLRAY_WIDE", t.scatter || bistatic || !bounded, "second accumulator",

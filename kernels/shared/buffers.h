@@ -5,15 +5,17 @@
 #define CLRAY_BUFFERS_H
 
 // What a pass reads: constants, where rays start, which views a launch is asked for, what rays are connected to, the
-// body, its surfaces, the Sobol numbers (bits reversed), the detectors with their sums and settings, the strata of the
-// views' beams, and bits of the primitives whose first bounce is not solved in each view (docs/exact.md). Then what it
-// adds to: sums at the first and the second scale, counts, and the counters of events of each view.
+// body (its tree, what leaves hold, faces), its surfaces, the Sobol numbers (bits reversed), the detectors with their
+// sums and settings, the strata of the views' beams, and bits of the primitives whose first bounce is not solved in
+// each view (docs/exact.md). Then what it adds to: sums at the first and the second scale, counts, and the counters of
+// events of each view.
 #define CLRAY_BUFFERS(X)                             \
   X(const CLRAY_GLOBAL ClrayPass, pass)              \
   X(const CLRAY_GLOBAL ClrayView, views)             \
   X(const CLRAY_GLOBAL u32, asked)                   \
   X(const CLRAY_GLOBAL ClrayConnection, connections) \
   X(const CLRAY_GLOBAL ClrayNode, nodes)             \
+  X(const CLRAY_GLOBAL u32, leaves)                  \
   X(const CLRAY_GLOBAL ClrayPrimitive, primitives)   \
   X(const CLRAY_GLOBAL f64, shapes)                  \
   X(const CLRAY_GLOBAL ClrayInstance, instances)     \

@@ -112,6 +112,9 @@ static void test_primitive(const Buffers* g, const LocalRay* ray, u32 index, u32
   hit->weights = weights;
 }
 
+/// The primitive at a place of a leaf. One that is cut into pieces stands in several.
+CLRAY_FN u32 leaf_primitive(const Buffers* g, u32 place) { return CLRAY_PIECES ? g->leaves[place] : place; }
+
 /// Walks one tree; with `any` it stops at the first hit of all.
 static void intersect_tree(const Buffers* g, const Ray* ray, const LocalRay* placed, vec3 centre, f64 scale, u32 root,
                            u32 instance, u32 any, Hit* hit) {
@@ -120,8 +123,9 @@ static void intersect_tree(const Buffers* g, const Ray* ray, const LocalRay* pla
   bvh_begin(&walk, root, placed->o, placed->d, centre, scale);
   while (bvh_next(&walk, g->nodes, hit->t, &first, &count, g->counters)) {
     for (u32 k = first; k < first + count; ++k) {
-      if (k == ray->skip_primitive && instance == ray->skip_instance) continue;
-      test_primitive(g, placed, k, instance, hit);
+      const u32 index = leaf_primitive(g, k);
+      if (index == ray->skip_primitive && instance == ray->skip_instance) continue;
+      test_primitive(g, placed, index, instance, hit);
     }
     if (any && hit->primitive != 0xffffffffu) return;
   }

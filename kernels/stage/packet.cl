@@ -254,7 +254,8 @@ static void packet_intersect(const Buffers* g, u32 view, Packet* p) {
   f64 t_max = INFINITY;
   bvh_begin_between(&walk, from->root, low, high, p->ray[0].d, v3_load(from->box_centre), from->box_scale);
   while (bvh_next(&walk, g->nodes, t_max, &first, &count, g->counters)) {
-    for (u32 index = first; index < first + count; ++index) {
+    for (u32 place = first; place < first + count; ++place) {
+      const u32 index = leaf_primitive(g, place);
 #if CLRAY_TRIANGLES
       if (!CLRAY_ANALYTIC || g->primitives[index].shape == CLRAY_SHAPE_triangle) {
         packet_triangle(g, p, &as_all, index);

@@ -91,7 +91,8 @@ TEST_CASE("large sums are nowhere twice, and --memory expects no less than a run
 }
 
 TEST_CASE("files of sums are written and read in parts") {
-  // The file has 188 MB. A run with it takes what one without takes, see above; whole in memory, it took that to 700 MB.
+  // The file has 188 MB. A run with it takes what one without takes, see above; whole in memory, it took that to 700
+  // MB.
   const Scratch scratch;
   spit(scratch / "square.obj", square());
   spit(scratch / "scene.toml", pulse());
