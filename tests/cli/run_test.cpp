@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/program.hpp"
+#include "support/sanitized.hpp"
 
 using namespace cli_test;
 
@@ -155,7 +156,7 @@ TEST_CASE("a signal ends early: what is finished is saved and marked, status 128
     spit(scratch / "square.obj", square());
     // More rays than any machine finishes in the time given here.
     const Running running(scratch, {"--device", "cpu", "--rays", "2^36", "--no-plots", "square.obj", "--out", "out"});
-    ::poll(nullptr, 0, 8000);
+    ::poll(nullptr, 0, clray_test::kSanitized ? 60000 : 8000);  // until something is finished
     running.send(signal);
     const auto outcome = running.wait();
     CAPTURE(outcome.err);
