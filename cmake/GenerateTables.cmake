@@ -45,8 +45,8 @@ endfunction()
 function(clray_generate_detectors)
   clray_rows(detector DETECTOR rows)
   set(includes "")
-  set(names LANES CONNECTIONS KEPT CONNECT SCATTER SHADOW DELTA ONE_SIDED PLANES PIECES INSTANCED WIDE STRATA SOBOL PIXELS
-      MIRRORS_FIRST SKIP_FIRST SKIP_PUSH CURVED)
+  set(names LANES CONNECTIONS KEPT CONNECT SCATTER SHADOW DELTA ONE_SIDED PLANES PIECES INSTANCED WIDE STRATA SOBOL
+    PIXELS MIRRORS_FIRST SKIP_FIRST SKIP_PUSH CURVED)
   foreach(hook hit connect scatter escape end flush)
     set(hook_${hook} "#define CLRAY_HOOK_${hook}(X)")
   endforeach()

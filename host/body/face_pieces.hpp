@@ -33,7 +33,7 @@ class FacePieces {
   Box box(std::size_t k) const;
   std::uint32_t face(std::size_t k) const;
 
-  static constexpr double kFurther = 0.3, kLeastGain = 0.1;
+  static constexpr double kFurther = 0.2, kLeastGain = 0.1;
 
  private:
   struct Piece {
