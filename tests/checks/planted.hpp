@@ -20,8 +20,7 @@ inline clray::KernelFiles with_planted_fault(bool race) {
   const std::string wrong = race ? "g->counts[sum_row(g, d, CLRAY_DELAY_HITS, row) + bin] += hits;"
                                  : "u32 never[3];\n  const u32 bins = (u32)settings[0] + never[row_of(tally) & 1u];";
   const std::size_t at = text.find(right);
-  if (at == std::string::npos)
-    throw clray::Error(clray::ErrorCode::bug, "the line to be replaced is not there", right);
+  if (at == std::string::npos) throw clray::Error(clray::ErrorCode::bug, "the line to be replaced is not there", right);
   text.replace(at, right.size(), wrong);
   if (!race) text.insert(text.find("static void"), "static u32 row_of(const Tally* t) { return t->view; }\n\n");
   return files;

@@ -65,7 +65,8 @@ FacePieces pieces_of(const std::vector<Triangle>& faces, bool may_cut = true, un
 }  // namespace
 
 TEST_CASE("every point of a face lies in the box of one of its pieces, and each box within the face's own") {
-  for (const auto& [size, place] : {std::pair(1.0, 0.0), {1e-9, 0.0}, {1e7, -3.0}, {1.0, 1e6}, {3.0, 0.1}}) {
+  for (const auto& where : {std::pair(1.0, 0.0), {1e-9, 0.0}, {1e7, -3.0}, {1.0, 1e6}, {3.0, 0.1}}) {
+    const double size = where.first, place = where.second;
     CAPTURE(size);
     CAPTURE(place);
     const std::vector<Triangle> faces = slivers(600, size, place, 7);

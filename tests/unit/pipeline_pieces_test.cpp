@@ -87,10 +87,11 @@ Sums traced(OpenedDevice& opened, const Scene& scene, TreeFaces faces, bool* pie
 TEST_CASE("rays find through pieces of faces what they find through whole ones") {
   OpenedDevice opened = opened_cpu();
   for (const std::string walk : {"plain", "packet", "placed"}) {
-    for (const auto& [size, place] : {std::pair(1.0, Vec3(0.0)), std::pair(1e-3, Vec3(7.0, -2.0, 0.5))}) {
+    for (const auto& where : {std::pair(1.0, Vec3(0.0)), std::pair(1e-3, Vec3(7.0, -2.0, 0.5))}) {
+      const double size = where.first;
       CAPTURE(walk);
       CAPTURE(size);
-      const Scene scene = scene_of(blades(300, size, place), walk);
+      const Scene scene = scene_of(blades(300, size, where.second), walk);
       bool pieces = false, none = true;
       const Sums found = traced(opened, scene, TreeFaces::pieces, &pieces);
       const Sums right = traced(opened, scene, TreeFaces::whole, &none);
