@@ -137,7 +137,7 @@ struct FacePieces::Cube {
       const Polygon below(polygon, plane, 1.0), above(polygon, plane, -1.0);
       if (below.whole && above.whole) {
         const double a = longest(below.box()), b = longest(above.box());
-        const int of_below = static_cast<int>(static_cast<double>(cuts - 1) * a / (a + b) + 0.5);
+        const auto of_below = static_cast<int>(std::lround(static_cast<double>(cuts - 1) * a / (a + b)));
         cut(below, of_below, boxes);
         cut(above, cuts - 1 - of_below, boxes);
         return;

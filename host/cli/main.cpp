@@ -134,7 +134,7 @@ class Run {
 
  private:
   Reference fitting_reference() const {
-    const Reference reference = load_reference(arguments_.reference);
+    Reference reference = load_reference(arguments_.reference);
     check_reference(reference, scene_);
     return reference;
   }
