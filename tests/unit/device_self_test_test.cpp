@@ -11,6 +11,7 @@
 #include "device/platforms.hpp"
 #include "device/program.hpp"
 #include "device/self_test.hpp"
+#include "support/sanitized.hpp"
 #include "unit/device_support.hpp"
 
 using namespace clray;
@@ -115,5 +116,5 @@ TEST_CASE("a warm self-test is quick") {
     best_s = std::min(best_s, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   }
   MESSAGE("warm self-test: " << 1000.0 * best_s << " ms");
-  CHECK(best_s < 0.005);
+  CHECK((best_s < 0.005 || clray_test::kSanitized));
 }
