@@ -17,10 +17,12 @@ namespace clray::ephemeris {
 
 namespace {
 
+constexpr const char* kSpace = " \t\r\v\f";  // what parts words, too: a line of nothing else has none
+
 std::string trimmed(const std::string& text) {
-  const std::size_t begin = text.find_first_not_of(" \t\r");
+  const std::size_t begin = text.find_first_not_of(kSpace);
   if (begin == std::string::npos) return {};
-  return text.substr(begin, text.find_last_not_of(" \t\r") - begin + 1);
+  return text.substr(begin, text.find_last_not_of(kSpace) - begin + 1);
 }
 
 std::string upper_of(std::string text) {

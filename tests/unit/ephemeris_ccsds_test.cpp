@@ -136,6 +136,15 @@ TEST_CASE("OEM: blocks, usable times, covariances, versions and time systems") {
   CHECK(read_oem(folder.write("day.oem", day_of_year)).zero.mjd == 61369);
 }
 
+TEST_CASE("OEM: a line of nothing but white space is empty, whichever white space it is") {
+  const Folder folder;
+  for (const char* line : {"\v", "\f", " \t\v\f\r"}) {
+    const std::string text =
+        std::string(line) + "\n" + replaced(kOemHead, "ORIGINATOR", std::string(line) + "\nORIGINATOR");
+    CHECK(read_oem(folder.write("spaces", text + oem_block(0, 600, 60, kHermite))).segments.size() == 1);
+  }
+}
+
 TEST_CASE("OEM: faults with their line") {
   const std::string good = kOemHead + oem_block(0, 600, 60, kHermite);
   check_refused("", "expected CCSDS_OEM_VERS");
