@@ -16,14 +16,18 @@ namespace {
 
 using Point = std::array<double, 3>;
 
-constexpr int kLevels = 30;            // of planes: cells of 2^-30 of the cube are the finest
+constexpr int kLevels = 30;  // of planes: cells of 2^-30 of the cube are the finest
+constexpr double kCells = 1 << kLevels;
 constexpr double kMostCuts = 64.0;     // of one face
 constexpr std::size_t kSample = 8192;  // faces, at least, that tell how often all are cut
 constexpr std::uint32_t kWhole = 0xffffffffu;
 
-/// Of the cube's size: more than a few roundings of numbers no larger than it is, which corners of pieces have. Boxes
-/// of the tree are widened by far more (kernels/walk/plain.cl).
+/// Boxes of pieces are enlarged by this share of the cube's size: more than the few roundings that their corners have.
+/// Boxes of the tree are widened by far more (kernels/walk/plain.cl).
 constexpr double kRoom = 1e-14;
+
+// Areas of larger or smaller bodies do not fit a double.
+constexpr double kSmallest = 1e-100, kLargest = 1e100;
 
 double half_area(const Box& b) {
   const double x = b.high[0] - b.low[0], y = b.high[1] - b.low[1], z = b.high[2] - b.low[2];
@@ -92,13 +96,17 @@ struct Polygon {
 /// The cube around the body, whose halves, their halves and so on give the planes to cut at.
 struct FacePieces::Cube {
   Point low{};
-  double size = 0.0, cell = 0.0, cells = 0.0;  // a finest cell's size, and 1 / that
+  double size = 0.0, cell = 0.0;  // of the cube, and of a finest cell
 
   // A little larger than the body, so that its far side lies within the last cell.
   explicit Cube(const Box& body) : size(longest(body) * 1.0001) {
     for (std::size_t k = 0; k < 3; ++k) low[k] = 0.5 * body.low[k] + 0.5 * body.high[k] - 0.5 * size;
     cell = std::ldexp(size, -kLevels);
-    cells = 1.0 / cell;
+  }
+
+  /// The finest cell of a coordinate. Far from the origin rounding may move a coordinate beyond the cube's sides.
+  std::uint32_t cell_of(double x, std::size_t axis) const {
+    return static_cast<std::uint32_t>(std::clamp((x - low[axis]) / cell, 0.0, kCells - 1.0));
   }
 
   /// The coarsest plane through a box, the one across its longer side where there are several.
@@ -106,8 +114,7 @@ struct FacePieces::Cube {
     Plane coarsest;
     double width = 0.0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const auto first = static_cast<std::uint32_t>((box.low[axis] - low[axis]) * cells);
-      const auto last = static_cast<std::uint32_t>((box.high[axis] - low[axis]) * cells);
+      const std::uint32_t first = cell_of(box.low[axis], axis), last = cell_of(box.high[axis], axis);
       if (first == last) continue;
       const int level = __builtin_clz(first ^ last) - (31 - kLevels);  // by the highest bit in which they differ
       const double own = box.high[axis] - box.low[axis];
@@ -177,7 +184,7 @@ struct FacePieces::Cut {
 FacePieces::FacePieces(BoxSource faces, const Box& body, bool may_cut, unsigned threads) : faces_(std::move(faces)) {
   if (!may_cut) return;
   const Cube cube(body);
-  if (!(cube.size > 0.0)) return;
+  if (!(cube.size > kSmallest && cube.size < kLargest)) return;
   const double per_priority = cuts_per_priority(cube);
   if (per_priority > 0.0) cut(cube, per_priority, threads_for(faces_.count, threads));
 }

@@ -223,6 +223,7 @@ class Packer {
     g_.primitives.reserve(raw_.size());
     std::vector<std::uint32_t> order;  // of all primitives
     order.reserve(raw_.size());
+    bool listed = false;  // what leaves hold
     for (std::uint32_t p = 0; p < g_.parts.size(); ++p) {
       std::vector<std::uint32_t> members;
       for (std::uint32_t i = 0; i < raw_.size(); ++i) {
@@ -243,21 +244,25 @@ class Packer {
       g_.parts[p].root = static_cast<std::uint32_t>(g_.nodes.size());
       g_.parts[p].frame = tree.frame;
       g_.stack_needed = std::max(g_.stack_needed, tree.stack_needed);
-      const auto first_leaf = static_cast<std::uint32_t>(g_.leaves.size());
-      std::vector<std::uint32_t> place(members.size(), kNowhere);  // of each member, once a leaf holds it
+      // Until a part has pieces, a leaf's places are those of its primitives.
+      const bool cut = pieces.count() > members.size();
+      if (cut) list_leaves(&g_);
+      listed = listed || cut;
+      const auto first_leaf = static_cast<std::uint32_t>(listed ? g_.leaves.size() : g_.primitives.size());
+      std::vector<std::uint32_t> place(cut ? members.size() : 0, kNowhere);  // of each member, once a leaf holds it
       for (const std::uint32_t box : tree.order) {
         const std::uint32_t k = pieces.face(box), member = members[k];
-        if (place[k] == kNowhere) {
-          place[k] = static_cast<std::uint32_t>(g_.primitives.size());
+        const auto next = static_cast<std::uint32_t>(g_.primitives.size());
+        const std::uint32_t found = cut && place[k] != kNowhere ? place[k] : next;
+        if (found == next) {
           append(raw_[member], member, rows[raw_[member].shape].faces, used);
           order.push_back(member);
         }
-        g_.leaves.push_back(place[k]);
+        if (cut) place[k] = found;
+        if (listed) g_.leaves.push_back(found);
       }
       append_tree(std::move(tree), first_leaf, &g_.nodes);
     }
-    // Without pieces a leaf's places are those of its primitives.
-    if (g_.leaves.size() == g_.primitives.size()) g_.leaves = {};
     g_.shapes = in_order(std::move(numbers_), raw_, order);
     append_planes();
     for (std::size_t row = 0; row < used.size(); ++row) {
@@ -360,6 +365,12 @@ std::vector<std::uint32_t> material_ranks(const Scene& scene) {
   });
   for (std::uint32_t k = 0; k < order.size(); ++k) rank[order[k]] = k;
   return rank;
+}
+
+void list_leaves(Geometry* geometry) {
+  if (!geometry->leaves.empty()) return;
+  geometry->leaves.resize(geometry->primitives.size());
+  std::iota(geometry->leaves.begin(), geometry->leaves.end(), 0u);
 }
 
 Geometry build_geometry(const Scene& scene, TreeFaces faces) {

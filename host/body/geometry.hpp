@@ -74,6 +74,9 @@ enum class TreeFaces { none, whole, pieces };
 /// Builds everything that does not depend on the view. Throws Error(input) if nothing can be hit.
 Geometry build_geometry(const Scene& scene, TreeFaces faces = TreeFaces::pieces);
 
+/// Fills Geometry::leaves where it is empty, with each primitive in its order.
+void list_leaves(Geometry* geometry);
+
 /// Where a hinged part stands in a view.
 RigidMotion part_motion(const Scene& scene, const Part& part, const Vec3& source, const Vec3& observer);
 

@@ -12,17 +12,15 @@
 
 #include "clray/error.hpp"
 #include "text/input_file.hpp"
+#include "text/text.hpp"
 
 namespace clray::ephemeris {
 
 namespace {
 
-constexpr const char* kSpace = " \t\r\v\f";  // what parts words, too: a line of nothing else has none
-
+// All white space parts words below, so all of it is trimmed: every line that is not empty has a word.
 std::string trimmed(const std::string& text) {
-  const std::size_t begin = text.find_first_not_of(kSpace);
-  if (begin == std::string::npos) return {};
-  return text.substr(begin, text.find_last_not_of(kSpace) - begin + 1);
+  return text::trimmed(text, " \t\r\v\f");
 }
 
 std::string upper_of(std::string text) {

@@ -13,6 +13,7 @@
 #include "clray/constants.hpp"
 #include "clray/error.hpp"
 #include "text/input_file.hpp"
+#include "text/text.hpp"
 
 namespace clray::pass {
 
@@ -25,9 +26,7 @@ constexpr double kArcsec = constants::kPi / 648000.0;
 }
 
 std::string trimmed(const std::string& text) {
-  const std::size_t begin = text.find_first_not_of(" \t\r\"");
-  if (begin == std::string::npos) return {};
-  return text.substr(begin, text.find_last_not_of(" \t\r\"") - begin + 1);
+  return text::trimmed(text, " \t\r\"");
 }
 
 bool number_of(const std::string& text, double* value) {

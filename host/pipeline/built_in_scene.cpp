@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <numeric>
 
 #include "clray/error.hpp"
 #include "scene/tables.hpp"
@@ -180,13 +179,6 @@ ProgramContent content_of(const PassPlan& plan, bool specialised) {
 
 namespace {
 
-/// A program that reads what leaves hold reads it here, too.
-void list_leaves(Geometry* geometry) {
-  if (!geometry->leaves.empty()) return;
-  geometry->leaves.resize(geometry->primitives.size());
-  std::iota(geometry->leaves.begin(), geometry->leaves.end(), 0u);
-}
-
 /// As if every other primitive were solved.
 void leave_half_unsolved(const Geometry& geometry, PassPlan* plan) {
   UnsolvedPrimitives& unsolved = plan->unsolved;
@@ -219,7 +211,7 @@ BuiltInScene built_in_scene(const ProgramContent& content) {
   scene.trace.specialise = content.specialised;
   scene.trace.walk = content.walk;
   BuiltInScene built{build_geometry(scene, content.pieces ? TreeFaces::pieces : TreeFaces::whole), {}};
-  if (content.pieces) list_leaves(&built.geometry);
+  if (content.pieces) list_leaves(&built.geometry);  // which the program reads, whatever the scene
   for (ClrayPrimitive& primitive : built.geometry.primitives) primitive.component %= content.components;
   // Only the first, which may be hinged, is asked for again; their number is that of the sums.
   scene.components.resize(content.components, scene.components.back());

@@ -48,6 +48,12 @@ std::string number(double value) {
   return {buffer, end};
 }
 
+std::string trimmed(std::string_view text, std::string_view of) {
+  const std::size_t begin = text.find_first_not_of(of);
+  if (begin == std::string_view::npos) return {};
+  return std::string(text.substr(begin, text.find_last_not_of(of) - begin + 1));
+}
+
 std::string rounded(double value, int digits) {
   return std::isfinite(value) ? chars(value, std::chars_format::general, digits) : number(value);
 }

@@ -16,6 +16,9 @@ std::string number(double value);
 /// `digits` significant digits, for titles and labels.
 std::string rounded(double value, int digits);
 
+/// A text without those of the characters `of` that it begins and ends with.
+std::string trimmed(std::string_view text, std::string_view of);
+
 /// Whether a character does something in a terminal or to the order of letters instead of being seen: controls (C0,
 /// DEL, C1), marks of the direction of writing, separators of lines and paragraphs.
 bool is_hidden(std::uint32_t character);

@@ -177,7 +177,7 @@ std::set<std::string> missing(const OpenedDevice& opened) {
 
 /// A program with one fault, which the checks of the device must report.
 void run_fault(OpenedDevice& opened, const std::string& fault) {
-  trace(opened, {simple("sphere", "lambert", "delay")}, clray_test::with_planted_fault(fault == "race"));
+  trace(opened, {simple("sphere", "lambert", "delay")}, clray::test::with_planted_fault(fault == "race"));
 }
 
 void run_all(Device& device, int drawn) {

@@ -18,8 +18,7 @@
 #include "pipeline/saved_sums.hpp"
 #include "scene/file/scene_csv.hpp"
 #include "slr/crd.hpp"
-#include "text/bytes.hpp"
-#include "text/hash.hpp"
+#include "support/sealed_sums.hpp"
 #include "text/input_file.hpp"
 
 namespace clray_fuzz {
@@ -51,17 +50,9 @@ void use(const ephemeris::Trajectory& t) {
 
 /// A file of sums whose version and checksum are made right, so that what is between them is believed.
 void read_sums(const std::string& path) {
-  constexpr std::size_t kHead = kSavedMagic.size() + 8, kSeal = 8;
   std::string bytes = text::read_input_file(path);
-  if (bytes.size() >= kHead + kSeal) {
-    const std::string sums = bytes.substr(kHead, bytes.size() - kHead - kSeal);
-    text::BytesWriter out;
-    out.raw(kSavedMagic);
-    out.number(2);
-    out.raw(sums);
-    out.number(checksum(sums.data(), sums.size()));
-    bytes = out.take();
-  }
+  if (bytes.size() >= clray_test::kSumsHead + clray_test::kSumsSeal)
+    bytes = clray_test::sealed(clray_test::between_seals(bytes));
   from_bytes(bytes, path);
 }
 

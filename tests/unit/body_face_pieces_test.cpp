@@ -134,6 +134,20 @@ TEST_CASE("where little is gained, nothing is cut: grids, single faces, faces of
   CHECK(shapes.count() == 100);
 }
 
+TEST_CASE("bodies of extreme size, or far from the origin, have pieces that hold their faces, or none") {
+  for (const auto& where : {std::pair(1e-9, 1e6), {1e-200, 0.0}, {1e-310, 0.0}, {1e200, 0.0}, {1e-15, 1.0}}) {
+    CAPTURE(where.first);
+    const std::vector<Triangle> faces = slivers(100, where.first, where.second, 4);
+    const FacePieces pieces = pieces_of(faces);
+    std::vector<Box> all(faces.size());
+    for (std::size_t k = 0; k < pieces.count(); ++k) all[pieces.face(k)].add(pieces.box(k));
+    bool same = true;
+    for (std::size_t i = 0; i < faces.size(); ++i)
+      same = same && all[i].low == box_of(faces[i]).low && all[i].high == box_of(faces[i]).high;
+    CHECK(same);  // together a face's pieces have its box
+  }
+}
+
 TEST_CASE("pieces do not depend on the number of threads") {
   const std::vector<Triangle> faces = slivers(60000, 1.0, 0.0, 9);
   const FacePieces one = pieces_of(faces, true, 1);

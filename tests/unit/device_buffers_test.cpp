@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a device cannot hold in one buffer is refused with what would need less, before anything is allocated.
+#include <doctest/doctest.h>
+
 #include "device/buffers.hpp"
 #include "device_support.hpp"
 

@@ -191,5 +191,5 @@ TEST_CASE("the embedded files are the files of kernels/, the tables can be read"
 }
 
 TEST_CASE("the faults that checks of devices plant have their lines in the kernels") {
-  for (const bool race : {false, true}) CHECK_NOTHROW(clray_test::with_planted_fault(race));
+  for (const bool race : {false, true}) CHECK_NOTHROW(clray::test::with_planted_fault(race));
 }

@@ -7,8 +7,7 @@
 
 #include "clray/error.hpp"
 #include "pipeline/saved_sums.hpp"
-#include "text/bytes.hpp"
-#include "text/hash.hpp"
+#include "support/sealed_sums.hpp"
 
 using namespace clray;
 
@@ -69,18 +68,6 @@ bool refused(const std::string& bytes) {
     return true;
   }
   return false;
-}
-
-constexpr std::size_t kHead = kSavedMagic.size() + 8, kSeal = 8;  // before the sums: magic, version; behind: checksum
-
-/// Bytes with a right checksum behind any content.
-std::string sealed(const std::string& sums) {
-  text::BytesWriter out;
-  out.raw(kSavedMagic);
-  out.number(2);
-  out.raw(sums);
-  out.number(checksum(sums.data(), sums.size()));
-  return out.take();
 }
 
 }  // namespace
@@ -191,7 +178,7 @@ TEST_CASE("a file of sums with any byte changed, or cut anywhere, is refused") {
 
 TEST_CASE("a file of sums that lies, with a right checksum, is refused or read, and takes no more memory than it has") {
   const std::string whole = to_bytes(some());
-  const std::string rest = whole.substr(kHead, whole.size() - kHead - kSeal);
+  const std::string rest = clray_test::between_seals(whole);
   std::mt19937_64 random(4);
   int taken = 0;
   for (int k = 0; k < 2000; ++k) {
@@ -201,7 +188,7 @@ TEST_CASE("a file of sums that lies, with a right checksum, is refused or read, 
     for (std::size_t b = 0; b < 8 && at + b < bad.size(); ++b) bad[at + b] = static_cast<char>(lie >> (8 * b));
     if (k % 5 == 0) bad.resize(random() % bad.size());
     try {
-      from_bytes(sealed(bad), "a file");
+      from_bytes(clray_test::sealed(bad), "a file");
       ++taken;
     } catch (const Error& error) {
       CHECK(error.code() == ErrorCode::input);

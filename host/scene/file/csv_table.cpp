@@ -15,6 +15,7 @@
 #include "ephemeris/epoch.hpp"
 #include "shared/portable.h"
 #include "text/input_file.hpp"
+#include "text/text.hpp"
 
 namespace clray {
 namespace {
@@ -75,9 +76,7 @@ struct Place {
 }
 
 std::string trimmed(const std::string& text) {
-  const std::size_t begin = text.find_first_not_of(" \t\r");
-  if (begin == std::string::npos) return {};
-  return text.substr(begin, text.find_last_not_of(" \t\r") - begin + 1);
+  return text::trimmed(text, " \t\r");
 }
 
 std::vector<std::string> fields_of(const std::string& line) {
