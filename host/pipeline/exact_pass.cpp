@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <future>
+#include <utility>
 
 #include "exact/carry.hpp"
 #include "exact/tiles.hpp"
@@ -46,7 +47,7 @@ class Solver {
     std::vector<std::future<Group>> next;
     if (first < end) next = prepare(first, together);
     for (std::size_t v = first; v < end; v += together) {
-      std::vector<std::future<Group>> groups = std::move(next);
+      std::vector<std::future<Group>> groups = std::exchange(next, {});
       if (v + together < end) next = prepare(v + together, together);
       Group lit = groups.front().get();
       if (!solve_lit(&lit)) return false;

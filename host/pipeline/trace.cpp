@@ -256,7 +256,7 @@ class Tracer {
           text::counted(geometry.conflicts, "face")));
     std::vector<std::string> early = device_.impl().notes;
     if (crew_ != nullptr) add_unique(crew_->notes(), &early);
-    add_unique(std::move(result_.warnings), &early);
+    add_unique(result_.warnings, &early);
     add_warnings(scene_, ending_, lit_, &result_);
     result_.warnings.insert(result_.warnings.end(), early.begin(), early.end());
     add_unique(pass_warnings(scene_), &result_.warnings);

@@ -189,7 +189,8 @@ Histogram convolve(const Histogram& in, const PulseKernel& kernel) {
   const long last = -floor_to(-(kernel.first + static_cast<long>(kernel.weight.size())), cuts);
   Histogram out;
   out.width_s = in.width_s / static_cast<double>(cuts);
-  out.first_s = in.first_s + static_cast<double>(first / cuts) * in.width_s;
+  const long whole_bins = first / cuts;  // exact: floor_to made `first` a multiple of `cuts`
+  out.first_s = in.first_s + static_cast<double>(whole_bins) * in.width_s;
   out.mass.assign(static_cast<std::size_t>(bins * cuts + last - first), 0.0);
   for (long bin = 0; bin < bins; ++bin) {
     const double part = in.mass[static_cast<std::size_t>(bin)] / static_cast<double>(cuts);

@@ -94,7 +94,7 @@ std::string ScatterPlot::draw(const std::string& folder, const std::string& file
   const std::string image = file + ".rgba", directory = folder.empty() ? "." : folder;
   const auto rgba = pixels();
   text::write_output_file(directory + "/" + image, {reinterpret_cast<const char*>(rgba.data()), rgba.size()});
-  const std::string fault =
+  std::string fault =
       plot_of(file, image, title, time_label_, origin_s_ + start_s_, origin_s_ + stop_s_, low_ns_, high_ns_)
           .draw(directory);
   text::discard_output_file(directory + "/" + image);

@@ -85,7 +85,7 @@ std::string folder_fault(const std::string& folder) {
   const std::string bytes(1u << 18, 'c');
   errno = ENOSPC;  // where less than all is written
   const bool whole = ::write(file, bytes.data(), bytes.size()) == static_cast<ssize_t>(bytes.size());
-  const std::string reason = whole ? "" : std::strerror(errno);
+  std::string reason = whole ? "" : std::strerror(errno);
   ::close(file);
   ::unlink(name.c_str());
   return reason;

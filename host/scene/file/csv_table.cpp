@@ -155,7 +155,7 @@ std::string expected_text(const std::vector<CsvColumn>& columns) {
     std::string others;
     for (const Unit& unit : kUnits) {
       const bool other = std::string(unit.kind) == wanted.kind && &unit != &wanted && *unit.name != '\0';
-      if (other && column.unit != "") others += (others.empty() ? "" : ", ") + std::string(unit.name);
+      if (other && !column.unit.empty()) others += (others.empty() ? "" : ", ") + std::string(unit.name);
     }
     if (!others.empty() && !column.dated) text += " (or " + others + ")";
   }

@@ -22,7 +22,7 @@ Spectrum key_spectrum(const TableKey& key, const std::string& file) {
   for (const char* word : {"reflectance", "albedo"}) {
     if (key.meaning.find(word) != std::string::npos) names.insert(names.end(), {word, "rho"});
   }
-  const Spectrum spectrum = read_spectrum(file, {names, ""}, key.low, key.high);
+  Spectrum spectrum = read_spectrum(file, {names, ""}, key.low, key.high);
   for (const double value : spectrum.value) {
     std::string expected;
     if (!key_accepts(key, value, &expected)) {

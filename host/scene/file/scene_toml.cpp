@@ -53,7 +53,7 @@ std::vector<std::string> material_names(const Scene& scene) {
 
 /// A material's name, which a [[material]] must have.
 std::string known_material(TomlTable& t, const std::string& key, const Scene& scene, const MaterialBook& book) {
-  const std::string name = t.text(key);
+  std::string name = t.text(key);
   if (book.find(name) < 0) {
     t.fail(key, "nobody defines a material \"" + name + "\"" + did_you_mean(name, material_names(scene)));
   }

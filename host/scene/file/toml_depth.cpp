@@ -46,7 +46,7 @@ TextPlace deep_key(std::string_view toml) {
     }
     if (c == '#') {
       at = toml.find('\n', at);
-      if (at == toml.npos) break;
+      if (at == std::string_view::npos) break;
       continue;
     }
     if (c == '.') {

@@ -174,10 +174,10 @@ std::string TomlTable::text(const std::string& key, std::optional<std::string> f
 }
 
 std::string TomlTable::choice(const std::string& key, const std::vector<std::string>& choices,
-                              std::optional<std::string> fallback) {
+                              const std::optional<std::string>& fallback) {
   const toml::node* value = node(key);
   if (value == nullptr && !fallback) missing(key, fmt::format("one of {}", fmt::join(choices, ", ")));
-  const std::string word = text(key, fallback);
+  std::string word = text(key, fallback);
   if (value != nullptr && std::find(choices.begin(), choices.end(), word) == choices.end()) {
     fail(key, fmt::format("expected one of {}, found \"{}\"{}", fmt::join(choices, ", "), word,
                           did_you_mean(word, choices)));
@@ -186,7 +186,7 @@ std::string TomlTable::choice(const std::string& key, const std::vector<std::str
 }
 
 std::string TomlTable::name(const std::string& key, std::optional<std::string> fallback) {
-  const std::string word = text(key, std::move(fallback));
+  std::string word = text(key, std::move(fallback));
   if (has(key) && !is_name(word)) fail(key, std::string(kNameExpected) + ", found \"" + word + "\"");
   return word;
 }
@@ -239,7 +239,7 @@ std::string TomlTable::file(const std::string& key) {
   if (name.empty() || error || ends.first != root.end()) {
     fail(key, "expected a file inside the scene's folder, found \"" + name + "\"");
   }
-  const std::string shown = (fs::path(file_).parent_path() / name).string();
+  std::string shown = (fs::path(file_).parent_path() / name).string();
   const std::string fault = text::input_file_fault(shown);
   if (fault.empty()) return shown;
   if (fs::exists(path, error)) fail(key, "\"" + name + "\" " + fault);

@@ -50,7 +50,7 @@ class TomlTable {
   std::string text(const std::string& key, std::optional<std::string> fallback = {});
   /// A text out of `choices`.
   std::string choice(const std::string& key, const std::vector<std::string>& choices,
-                     std::optional<std::string> fallback = {});
+                     const std::optional<std::string>& fallback = {});
   /// A name fit for result keys and file names.
   std::string name(const std::string& key, std::optional<std::string> fallback = {});
   /// Three finite numbers.

@@ -21,7 +21,7 @@ void throw_fault(const std::string& where, const std::string& fault) {
 }  // namespace
 
 bool is_name(const std::string& text) {
-  const bool plain = text.find_first_of("/\\") == text.npos && text::shown(text) == text;
+  const bool plain = text.find_first_of("/\\") == std::string::npos && text::shown(text) == text;
   return plain && !text.empty() && text != "." && text != "..";
 }
 
@@ -31,7 +31,7 @@ std::string vector_fault(const Vec3& v) {
 }
 
 std::string place_fault(const Vec3& v) {
-  const std::string fault = vector_fault(v);
+  std::string fault = vector_fault(v);
   if (!fault.empty()) return fault;
   const double most = std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
   return most <= kLongest_m ? "" : fmt::format("expected at most {:g} m, found {:g}", kLongest_m, most);
@@ -47,7 +47,7 @@ Vec3 unit_vector(const Vec3& v) {
 }
 
 std::string unit_fault(const Vec3& v) {
-  const std::string fault = vector_fault(v);
+  std::string fault = vector_fault(v);
   if (!fault.empty()) return fault;
   const double square = v.x * v.x + v.y * v.y + v.z * v.z;
   // Normalised vectors have length 1 to a few ulp; 1e-12 allows for some arithmetic after that.

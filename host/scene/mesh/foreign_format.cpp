@@ -37,7 +37,7 @@ std::string extension_of(const std::string& path) {
 
 std::string foreign_format(const std::string& path) {
   const std::string extension = extension_of(path);
-  if (extension.empty() || extension.find(' ') != extension.npos) return {};
+  if (extension.empty() || extension.find(' ') != std::string::npos) return {};
   for (const Family& family : kFamilies) {
     if (std::string(family.extensions).find(" " + extension + " ") != std::string::npos)
       return extension + " is " + family.advice;

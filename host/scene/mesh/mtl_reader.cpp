@@ -47,7 +47,7 @@ class MtlReader {
   MtlReader(const std::string& path, const std::string& content) : path_(path), text_(content, path) {
     const std::string_view key = "newmtl";
     std::size_t count = 0;
-    for (std::size_t i = content.find(key); i != content.npos; i = content.find(key, i + key.size())) ++count;
+    for (std::size_t i = content.find(key); i != std::string_view::npos; i = content.find(key, i + key.size())) ++count;
     entries_.reserve(count);
     place_of_.reserve(count);
   }
@@ -93,10 +93,10 @@ class MtlReader {
         place_of_.insert(current_->name, static_cast<std::uint32_t>(entries_.size()),
                          [&](std::size_t i) { return i == entries_.size() ? current_->name : entries_[i].name; });
     if (inserted) {
-      entries_.push_back(std::move(*current_));
+      entries_.push_back(*current_);
     } else {
       twice_.add(current_->line, current_->name);
-      entries_[place] = std::move(*current_);
+      entries_[place] = *current_;
     }
     current_.reset();
   }

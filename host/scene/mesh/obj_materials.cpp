@@ -26,7 +26,7 @@ class NameTable {
       : materials_(materials), whole_(whole) {
     for (std::size_t i = 0; i < materials.size(); ++i) {
       const std::string& name = materials[i].name;
-      if (name.find('#') == name.npos) continue;
+      if (name.find('#') == std::string::npos) continue;
       add(cut_, without_comment(name), i);
       add(loose_, without_comment(name, true), i);
     }
@@ -36,7 +36,7 @@ class NameTable {
   /// "Material #27" is not "Material #25".
   int find(std::string_view name) const {
     int found = whole_or_cut(name);
-    if (found < 0 && name.find('#') != name.npos) {
+    if (found < 0 && name.find('#') != std::string::npos) {
       found = whole_or_cut(without_comment(name));
       if (found < 0) found = whole_or_cut(without_comment(name, true));
     }
@@ -85,13 +85,13 @@ class NameTable {
 
 std::string base_name(const std::string& name) {
   const std::size_t slash = name.find_last_of("/\\");
-  return slash == name.npos ? name : name.substr(slash + 1);
+  return slash == std::string::npos ? name : name.substr(slash + 1);
 }
 
 // The path of `name` beside the OBJ file, with links followed; empty if it is no file inside the folder.
 fs::path file_inside(const fs::path& root, const std::string& name) {
   std::error_code error;
-  if (name.empty() || name.find('\0') != name.npos) return {};
+  if (name.empty() || name.find('\0') != std::string::npos) return {};
   const fs::path file = fs::weakly_canonical(root / name, error);
   if (error) return {};
   const fs::path inside = file.lexically_relative(root);
