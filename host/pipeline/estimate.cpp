@@ -106,12 +106,14 @@ bool agree(double value, double standard_error) {
   return standard_error <= kRounding * std::fabs(value);
 }
 
-Estimate estimate_total(const std::vector<double>& replicates, double rays, double solved) {
+Estimate estimate_total(const std::vector<double>& replicates, double rays, double solved, double most) {
   if (replicates.size() == 1) return exact_number(replicates.front() + solved);
   Estimate e = estimate_mean(replicates);
   double error = e.standard_error;
-  if (agree(e.value, error) && rays > 0.0)
-    error = error_of_agreement(replicates.size()) * std::fabs(e.value != 0.0 ? e.value : solved) / rays;
+  if (agree(e.value, error) && rays > 0.0) {
+    const double brought = e.value != 0.0 ? e.value : solved != 0.0 ? solved : most;
+    error = error_of_agreement(replicates.size()) * std::fabs(brought) / rays;
+  }
   e.value += solved;
   set_error(error, replicates.size(), &e);
   return e;

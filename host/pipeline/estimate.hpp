@@ -36,8 +36,9 @@ bool agree(double value, double standard_error);
 
 /// estimate_mean() of a total that so many rays of each replicate bring, none too small where the replicates agree. To
 /// each replicate `solved` is added, which has no error. Where the rays brought nothing, one of them counts as that
-/// over their number: what they may have missed is taken for as bright as what is solved.
-Estimate estimate_total(const std::vector<double>& replicates, double rays, double solved = 0.0);
+/// over their number: what they may have missed is taken for as bright as what is solved. Where nothing is solved, it
+/// is taken for `most`, the total if every ray brought as much as a ray can.
+Estimate estimate_total(const std::vector<double>& replicates, double rays, double solved = 0.0, double most = 0.0);
 
 /// A ratio-like statistic of pooled sums with its jackknife error: `pooled` over all replicates, `left_out[r]` over all
 /// but r.

@@ -27,9 +27,11 @@ void LitRecords::note(const TableRow& row, const ResultKey& key, bool lit) {
   }
 }
 
-std::vector<std::string> LitRecords::warnings() const {
-  const char* const kWhat[] = {"no hits: nothing that was lit is seen", "no hits: no light meets the body",
-                               "black pictures: nothing that is seen was lit"};
+std::vector<std::string> LitRecords::warnings(bool sampled) const {
+  const char* const what[] = {
+      sampled ? "no hits: rays found nothing that is lit and seen" : "no hits: nothing that was lit is seen",
+      sampled ? "no hits: rays found no light on the body" : "no hits: no light meets the body",
+      "black pictures: nothing that is seen was lit"};
   std::vector<std::string> warnings;
   for (std::size_t kind = 0; kind < kinds_.size(); ++kind) {
     std::string names;
@@ -40,7 +42,7 @@ std::vector<std::string> LitRecords::warnings() const {
     if (dark == 0) continue;
     if (dark > 4) names += fmt::format("; and {} more", dark - 4);
     const bool all = dark == kinds_[kind].size() && dark > 1;
-    warnings.push_back(fmt::format("{}: all results are zero ({})", kWhat[kind], all ? "all records" : names));
+    warnings.push_back(fmt::format("{}: all results are zero ({})", what[kind], all ? "all records" : names));
   }
   return warnings;
 }

@@ -21,7 +21,8 @@ class LitRecords {
  public:
   /// Notes a record of a detector, a row of detector.def.
   void note(const TableRow& row, const ResultKey& key, bool lit);
-  std::vector<std::string> warnings() const;
+  /// `sampled`: rays were traced. What they did not find may be there.
+  std::vector<std::string> warnings(bool sampled) const;
 
  private:
   // By what a detector looks at: light toward observers, light on the body, or a picture.

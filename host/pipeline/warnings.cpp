@@ -8,7 +8,6 @@
 #include <cmath>
 
 #include "body/geometry.hpp"
-#include "body/portable_tables.hpp"
 #include "pipeline/detector/intensity.hpp"
 #include "pipeline/estimate.hpp"
 #include "scene/tables.hpp"
@@ -60,14 +59,6 @@ bool may_be_unmet(const Geometry& geometry, double rays_per_m2) {
   });
 }
 
-double bound_of_lane(const PassPlan& plan, std::size_t lane, double cos_half_phase) {
-  double bound = 0.0;
-  const MaterialTable& table = plan.materials;
-  for (std::size_t m = lane * table.columns; m < (lane + 1) * table.columns; ++m)
-    bound = std::max(bound, surface_bound(table.rows[m], table.tables, std::max(cos_half_phase, 1e-6)));
-  return bound;
-}
-
 /// The largest share of a total that could be missing because no ray met it; 0 where the claimed error covers it.
 double unseen_share(const PassPlan& plan, const Sums& sums) {
   const SumReader read(plan, sums);
@@ -75,14 +66,10 @@ double unseen_share(const PassPlan& plan, const Sums& sums) {
   double largest = 0.0;
   for (std::size_t v = 0; v < plan.beams.views.size(); ++v) {
     for (std::size_t c = 0; c < plan.traits.connections; ++c) {
-      const double *s = plan.beams.views[v].toward,
-                   *o = plan.beams.connections[v * plan.traits.connections + c].direction;
-      const double cos_half =
-          0.5 * std::sqrt(std::pow(s[0] + o[0], 2) + std::pow(s[1] + o[1], 2) + std::pow(s[2] + o[2], 2));
       for (std::size_t l = 0; l < plan.request.lanes.size(); ++l) {
         const Estimate a = estimate_mean(intensities(plan, read, v, l, c));
         if (!(a.value > 0.0)) continue;
-        const double share = poisson_upper95(0) * bound_of_lane(plan, l, cos_half) * read.share(v) /
+        const double share = poisson_upper95(0) * most_intensity(plan, v, l, c) / rays_of(read, v) /
                              static_cast<double>(plan.request.replicates) / a.value;
         if (share > 2.0 * t95 * a.standard_error / a.value) largest = std::max(largest, share);
       }
@@ -204,7 +191,7 @@ void warn_outside_window(Result* result) {
 
 void add_warnings(const Scene& scene, const Ending& ending, const LitRecords& lit, Result* result) {
   result->warnings = scene.warnings;
-  for (const std::string& warning : lit.warnings()) result->warnings.push_back(warning);
+  for (const std::string& warning : lit.warnings(result->rays > 0)) result->warnings.push_back(warning);
   for (const EnergyBooks& books : result->energy) {
     if (books.unconnected_specular_m2.value > 0.0)
       result->warnings.push_back(

@@ -168,12 +168,6 @@ Material one_sided(double rho) {
   return m;
 }
 
-/// Whether a warning says so.
-bool warns(const clray::Result& result, const std::string& words) {
-  return std::any_of(result.warnings.begin(), result.warnings.end(),
-                     [&](const std::string& w) { return w.find(words) != std::string::npos; });
-}
-
 }  // namespace
 
 TEST_CASE("bands share no direction that one of them never takes: a surface dark in its first band") {

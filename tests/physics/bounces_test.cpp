@@ -155,6 +155,29 @@ TEST_CASE("where every ray counts alike and all replicates agree, the claim leav
   }
 }
 
+TEST_CASE("rays that all miss leave open a peak of one ray: the interval of 0 holds two beads a kilometre apart") {
+  clray::Scene scene = scene_of("sphere", {{"radius", 1e-3}}, lambert(0.5));
+  add(scene, "sphere", {{"radius", 1e-3}}, lambert(0.5)).transform.translate = {1000.0, 0.0, 0.0};
+  for (const char* kind : {"delay", "spectrometer"}) {
+    CAPTURE(kind);
+    scene.detectors.clear();
+    detect(scene, kind);
+    scene.trace.method = clray::Method::points;
+    scene.trace.sampler = clray::SamplerKind::sobol;
+    const clray::Result result = run(rays(scene, 10));
+    const clray::Estimate a =
+        result.delay.empty() ? result.spectrometer.at(0).intensity_m2_per_sr : result.delay.at(0).intensity_m2_per_sr;
+    REQUIRE(a.value == 0.0);
+    // 3/16 of a ray of 64 at 95 %, of a beam of 1000.002 m by 2 mm, each as bright as a Lambert plate face-on.
+    const double most = 3.0 / 16.0 / 64.0 * 1000.002 * 0.002 * 0.5 / kPi;
+    CHECK(a.high == relative(most).epsilon(1e-4));  // the beam has a margin
+    CHECK(a.standard_error == relative(most / 2.1314495).epsilon(1e-4));
+    CHECK(a.high > 2.0 * 2.0 / 3.0 * 0.5 * 1e-6);
+    CHECK(warns(result, "rays found nothing that is lit and seen"));
+    if (!result.delay.empty()) CHECK(result.delay[0].bin_upper_bound.at(0) == relative(most).epsilon(1e-4));
+  }
+}
+
 TEST_CASE("a black plate across the beam is pushed as it must be, and the claim is that of the rays there were") {
   clray::Scene scene = scene_of(plate_mesh(1, 1), lambert(0.0));
   detect(scene, "pressure");

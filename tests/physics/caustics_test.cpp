@@ -42,11 +42,6 @@ clray::Scene floor_and_wall(double reflectance, double rho, Vec3 s, Vec3 o) {
   return scene;
 }
 
-bool warns(const clray::Result& result, const std::string& words) {
-  return std::any_of(result.warnings.begin(), result.warnings.end(),
-                     [&](const std::string& w) { return w.find(words) != std::string::npos; });
-}
-
 }  // namespace
 
 TEST_CASE("a mirror floor lights the wall up to where its reflection reaches, in the pixels that show it") {

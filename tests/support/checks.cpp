@@ -49,4 +49,9 @@ void check_bins(const clray::DelayResult& found, const Pulse& exact, std::uint64
   CHECK(std::fabs(all - found.intensity_m2_per_sr.value) <= 1e-12 * std::fabs(all));
 }
 
+bool warns(const clray::Result& result, const std::string& words) {
+  return std::any_of(result.warnings.begin(), result.warnings.end(),
+                     [&](const std::string& w) { return w.find(words) != std::string::npos; });
+}
+
 }  // namespace clray_test

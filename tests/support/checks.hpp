@@ -31,4 +31,7 @@ void check_component(double found, double standard_error, double exact, double s
 void check_bins(const clray::DelayResult& found, const Pulse& exact, std::uint64_t rays, int replicates, double beam_m2,
                 double largest_weight, const std::string& what);
 
+/// Whether a warning of the result has these words.
+bool warns(const clray::Result& result, const std::string& words);
+
 }  // namespace clray_test

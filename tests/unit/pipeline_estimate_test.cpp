@@ -249,6 +249,12 @@ TEST_CASE("replicates that agree leave open a share of one ray each, and of noth
   rounded[3] = 1.0 + 1e-3;
   CHECK(estimate_total(rounded, 1000.0).standard_error == estimate_mean(rounded).standard_error);
   CHECK(estimate_total(rounded, 1000.0).standard_error == doctest::Approx(1e-3 / 16.0).epsilon(1e-9));
-  CHECK(estimate_total(std::vector<double>(16, 0.0), 1000.0).standard_error == 0.0);
+  const std::vector<double> zeros(16, 0.0);
+  CHECK(estimate_total(zeros, 1000.0).standard_error == 0.0);
+  // One ray of 1000 counts as what is solved, else as the most that it may bring.
+  CHECK(estimate_total(zeros, 1000.0, 0.0, 5.0).standard_error == doctest::Approx(5.0 * 0.0879683e-3).epsilon(1e-5));
+  CHECK(estimate_total(zeros, 1000.0, 2.0, 5.0).standard_error == doctest::Approx(2.0 * 0.0879683e-3).epsilon(1e-5));
+  CHECK(estimate_total(std::vector<double>(16, 1.0), 1000.0, 0.0, 5.0).standard_error ==
+        doctest::Approx(0.0879683e-3).epsilon(1e-5));
   CHECK(estimate_total(std::vector<double>(16, 2.0), 0.0).standard_error < 1e-15);
 }

@@ -156,9 +156,9 @@ HitSizes hit_sizes(const RoomResults& x, std::size_t v, std::size_t l, std::size
         solved_intensity(x.plan, x.read, v, l, c) / (static_cast<double>(x.read.points(v)) * replicates);
     return {of_ray, of_ray};
   }
+  if (hits == 0) return {0.0, most_intensity(x.plan, v, l, c) / (rays_of(x.read, v) * replicates)};
   const double all = estimate_mean(intensities(x.plan, x.read, v, l, c)).value;
-  return {hits == 0 ? 0.0 : all / static_cast<double>(hits),
-          largest_weight(x, v, l, c) * (x.read.share(v) / replicates)};
+  return {all / static_cast<double>(hits), largest_weight(x, v, l, c) * (x.read.share(v) / replicates)};
 }
 
 /// A bin: what is solved, and what rays found beside it.

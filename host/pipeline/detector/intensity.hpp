@@ -2,6 +2,10 @@
 // What the inner detector `intensity` found, for those that read it: A of a connection, and its moments of delay.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
+#include "body/portable_tables.hpp"
 #include "pipeline/estimate.hpp"
 #include "pipeline/sum_reader.hpp"
 
@@ -39,6 +43,19 @@ inline std::uint64_t hits_of(const PassPlan& plan, const SumReader& read, std::s
   return sum;
 }
 
+/// A of a view's beam, m²/sr, if every first surface sent a connection as much as these materials can: their brightest
+/// peak toward it, over the whole beam.
+inline double most_intensity(const PassPlan& plan, std::size_t v, std::size_t l, std::size_t c) {
+  const double *s = plan.beams.views[v].toward, *o = plan.beams.connections[v * plan.traits.connections + c].direction;
+  const double cos_half =
+      0.5 * std::sqrt(std::pow(s[0] + o[0], 2) + std::pow(s[1] + o[1], 2) + std::pow(s[2] + o[2], 2));
+  double bound = 0.0;
+  const MaterialTable& table = plan.materials;
+  for (std::size_t m = l * table.columns; m < (l + 1) * table.columns; ++m)
+    bound = std::max(bound, surface_bound(table.rows[m], table.tables, std::max(cos_half, 1e-6)));
+  return bound * plan.beams.area_m2[v];
+}
+
 /// A with its error. The rays that bring it are those that the delay histogram counted, where there is one.
 inline Estimate intensity_estimate(const PassPlan& plan, const SumReader& read, std::size_t v, std::size_t l,
                                    std::size_t c) {
@@ -50,7 +67,7 @@ inline Estimate intensity_estimate(const PassPlan& plan, const SumReader& read, 
   const std::uint64_t hits = hits_of(plan, read, v, l, c);
   const double rays = hits != 0 ? static_cast<double>(hits) / plan.request.replicates : rays_of(read, v);
   const double solved = solved_intensity(plan, read, v, l, c);
-  Estimate e = estimate_total(intensities(plan, read, v, l, c), rays, solved);
+  Estimate e = estimate_total(intensities(plan, read, v, l, c), rays, solved, most_intensity(plan, v, l, c));
   e.tiles = plan.request.tiles();
   if (read.adds_to(find_detector(plan, "intensity")->first_block)) {
     e.exact_part = solved;
