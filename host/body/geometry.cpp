@@ -155,17 +155,7 @@ class Packer {
     g_.report.area_m2 += shape_area_of(row, keys.data()) * component.transform.scale * component.transform.scale;
   }
 
-  int compare(const RawPrimitive& a, const RawPrimitive& b) const {
-    if (a.size != b.size) return a.size < b.size ? -1 : 1;
-    for (std::uint32_t k = 0; k < a.size; ++k) {
-      if (numbers_[a.data + k] != numbers_[b.data + k]) return numbers_[a.data + k] < numbers_[b.data + k] ? -1 : 1;
-    }
-    if (a.shape != b.shape) return a.shape < b.shape ? -1 : 1;
-    if (a.part != b.part) return a.part < b.part ? -1 : 1;
-    return 0;
-  }
-
-  // Sorts raw_ and its numbers into canonical order and drops copies. What follows reads them one after the other.
+  // Sorts raw_ and its numbers into canonical order and drops copies. What follows reads them in turn.
   void rank() {
     struct Key {
       double first;
@@ -177,29 +167,17 @@ class Packer {
     sort_in_parts(&keys, [&](const Key& x, const Key& y) {
       if (x.first != y.first) return x.first < y.first;
       const RawPrimitive &a = raw_[x.index], &b = raw_[y.index];
-      if (const int order = compare(a, b)) return order < 0;
+      if (const int order = compared(a, b, numbers_)) return order < 0;
       if (a.material != b.material) return material_rank[a.material] < material_rank[b.material];
       if (a.component != b.component) return a.component < b.component;
       return x.index < y.index;
     });
-    std::vector<std::uint32_t> order;
-    order.reserve(keys.size());
-    for (const Key& key : keys) {
-      const RawPrimitive& raw = raw_[key.index];
-      if (order.empty() || raw_[order.back()].material != raw.material || compare(raw_[order.back()], raw) != 0)
-        order.push_back(key.index);
-    }
+    std::vector<std::uint32_t> order(keys.size());
+    std::transform(keys.begin(), keys.end(), order.begin(), [](const Key& key) { return key.index; });
     keys = {};
-    numbers_ = in_order(std::move(numbers_), raw_, order);
-    std::vector<RawPrimitive> sorted;
-    sorted.reserve(order.size());
-    std::uint32_t end = 0;
-    for (const std::uint32_t k : order) {
-      sorted.push_back(raw_[k]);
-      sorted.back().data = end;
-      end += raw_[k].size;
-    }
-    raw_ = std::move(sorted);
+    numbers_ = in_order(numbers_, raw_, order);
+    raw_ = in_order(raw_, order);
+    drop_copies(&raw_, &numbers_);
   }
 
   void share_planes() {
@@ -263,7 +241,7 @@ class Packer {
       }
       append_tree(std::move(tree), first_leaf, &g_.nodes);
     }
-    g_.shapes = in_order(std::move(numbers_), raw_, order);
+    g_.shapes = in_order(numbers_, raw_, order);
     append_planes();
     for (std::size_t row = 0; row < used.size(); ++row) {
       if (used[row]) g_.shape_rows.push_back(static_cast<int>(row));

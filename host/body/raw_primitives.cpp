@@ -2,10 +2,11 @@
 // See raw_primitives.hpp.
 #include "body/raw_primitives.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
-#include <utility>
 
+#include "body/in_parts.hpp"
 #include "body/portable_tables.hpp"
 #include "shared/elementary.h"
 
@@ -108,48 +109,65 @@ bool are_triangles(const std::vector<RawPrimitive>& raw) {
   return true;
 }
 
-/// Of a permutation, where each triangle of the new order stood.
-std::vector<std::uint32_t> permutation(std::vector<std::uint32_t> order, std::size_t count) {
-  if (order.size() == count) return order;
-  std::vector<bool> taken(count, false);
-  for (const std::uint32_t k : order) taken[k] = true;
-  for (std::uint32_t k = 0; k < count; ++k) {
-    if (!taken[k]) order.push_back(k);
-  }
-  return order;
+/// Copies moved[k] = items[order[k]] of `size` numbers each, by all cores. The places that come next are fetched ahead:
+/// they lie anywhere in memory, and waiting for each would be most of the time.
+template <std::size_t size, class T>
+std::vector<T> gathered(const T* items, const std::vector<std::uint32_t>& order) {
+  constexpr std::size_t kAhead = 16;
+  std::vector<T> moved(size * order.size());
+  in_parts(order.size(), threads_for(order.size()), [&](std::size_t first, std::size_t end) {
+    for (std::size_t k = first; k < end; ++k) {
+      if (k + kAhead < end) __builtin_prefetch(items + size * order[k + kAhead]);
+      std::copy_n(items + size * order[k], size, moved.begin() + static_cast<std::ptrdiff_t>(size * k));
+    }
+  });
+  return moved;
 }
 
 }  // namespace
 
-std::vector<double> in_order(std::vector<double> numbers, const std::vector<RawPrimitive>& raw,
+std::vector<double> in_order(const std::vector<double>& numbers, const std::vector<RawPrimitive>& raw,
                              const std::vector<std::uint32_t>& order) {
-  if (!are_triangles(raw)) {
-    std::vector<double> moved;
-    moved.reserve(numbers.size());
-    for (const std::uint32_t k : order) {
-      const auto first = numbers.begin() + raw[k].data;
-      moved.insert(moved.end(), first, first + raw[k].size);
-    }
-    return moved;
+  if (are_triangles(raw)) return gathered<kTriangleSize>(numbers.data(), order);
+  std::vector<double> moved;
+  moved.reserve(numbers.size());
+  for (const std::uint32_t k : order) {
+    const auto first = numbers.begin() + raw[k].data;
+    moved.insert(moved.end(), first, first + raw[k].size);
   }
-  // In place, cycle by cycle: a second copy of many triangles would be the most memory that a scene takes.
-  using Triangle = std::array<double, kTriangleSize>;
-  auto* triangles = reinterpret_cast<Triangle*>(numbers.data());
-  const std::vector<std::uint32_t> from = permutation(order, raw.size());
-  std::vector<bool> done(from.size(), false);
-  for (std::uint32_t k = 0; k < from.size(); ++k) {
-    if (done[k]) continue;
-    const Triangle held = triangles[k];
-    std::uint32_t to = k;
-    for (; from[to] != k; to = from[to]) {
-      triangles[to] = triangles[from[to]];
-      done[to] = true;
-    }
-    triangles[to] = held;
-    done[to] = true;
+  return moved;
+}
+
+std::vector<RawPrimitive> in_order(const std::vector<RawPrimitive>& raw, const std::vector<std::uint32_t>& order) {
+  return gathered<1>(raw.data(), order);
+}
+
+int compared(const RawPrimitive& a, const RawPrimitive& b, const std::vector<double>& numbers) {
+  if (a.size != b.size) return a.size < b.size ? -1 : 1;
+  for (std::uint32_t k = 0; k < a.size; ++k) {
+    if (numbers[a.data + k] != numbers[b.data + k]) return numbers[a.data + k] < numbers[b.data + k] ? -1 : 1;
   }
-  numbers.resize(kTriangleSize * order.size());
-  return numbers;
+  if (a.shape != b.shape) return a.shape < b.shape ? -1 : 1;
+  if (a.part != b.part) return a.part < b.part ? -1 : 1;
+  return 0;
+}
+
+void drop_copies(std::vector<RawPrimitive>* raw, std::vector<double>* numbers) {
+  std::size_t kept = 0;
+  std::uint32_t from = 0, end = 0;
+  for (RawPrimitive one : *raw) {
+    one.data = from;
+    from += one.size;
+    if (kept != 0 && (*raw)[kept - 1].material == one.material && compared((*raw)[kept - 1], one, *numbers) == 0)
+      continue;
+    const auto first = numbers->begin() + one.data;
+    if (end != one.data) std::copy(first, first + one.size, numbers->begin() + end);
+    one.data = end;
+    end += one.size;
+    (*raw)[kept++] = one;
+  }
+  raw->resize(kept);
+  numbers->resize(end);
 }
 
 SharedPlanes shared_planes_of(const std::vector<RawPrimitive>& primitives, const std::vector<double>& numbers) {

@@ -28,8 +28,18 @@ Box box_of(const RawPrimitive& raw, const std::vector<double>& numbers);
 const double* corners_of(const RawPrimitive& raw, const std::vector<double>& numbers);
 
 /// The numbers of primitives in another order: those of raw[order[0]] first. Some may be left out.
-std::vector<double> in_order(std::vector<double> numbers, const std::vector<RawPrimitive>& raw,
+std::vector<double> in_order(const std::vector<double>& numbers, const std::vector<RawPrimitive>& raw,
                              const std::vector<std::uint32_t>& order);
+/// Primitives in another order, each with the place that its numbers had.
+std::vector<RawPrimitive> in_order(const std::vector<RawPrimitive>& raw, const std::vector<std::uint32_t>& order);
+
+/// The canonical order of primitives, materials and components left out: negative where `a` comes first, 0 where they
+/// are the same.
+int compared(const RawPrimitive& a, const RawPrimitive& b, const std::vector<double>& numbers);
+
+/// Drops each primitive that is the same as the one before, of the same material. The numbers stand in the order of the
+/// primitives; afterwards each says where its own are.
+void drop_copies(std::vector<RawPrimitive>* raw, std::vector<double>* numbers);
 
 /// Faces of primitives in canonical order that overlap in one plane.
 SharedPlanes shared_planes_of(const std::vector<RawPrimitive>& primitives, const std::vector<double>& numbers);

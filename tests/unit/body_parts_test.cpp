@@ -48,7 +48,7 @@ TEST_CASE("each element is in one part, and a failure of any part is thrown") {
 TEST_CASE("numbers of primitives are brought into any order, with some left out, triangles in place") {
   std::mt19937 random(6);
   for (const bool shapes : {false, true}) {
-    for (const std::size_t count : {1u, 2u, 50u, 1000u}) {
+    for (const std::size_t count : {1u, 2u, 50u, 1000u, 40000u}) {  // the last by several threads
       for (const std::size_t kept : {count, (count + 1) / 2}) {
         CAPTURE(shapes);
         CAPTURE(count);
@@ -68,7 +68,45 @@ TEST_CASE("numbers of primitives are brought into any order, with some left out,
           for (std::uint32_t n = 0; n < raw[k].size; ++n) expected.push_back(numbers[raw[k].data + n]);
         }
         CHECK(in_order(numbers, raw, order) == expected);
+        const std::vector<RawPrimitive> moved = in_order(raw, order);
+        bool same = moved.size() == order.size();
+        for (std::size_t k = 0; same && k < order.size(); ++k) same = moved[k].data == raw[order[k]].data;
+        CHECK(same);
       }
     }
+  }
+}
+
+TEST_CASE("raw primitives: of neighbours alike in numbers, shape and material one stays, with its numbers") {
+  // Triangles a a' b b b and shapes c c, where a' has another material, and the last c another shape.
+  std::vector<double> numbers;
+  std::vector<RawPrimitive> raw;
+  const auto put = [&](double value, std::uint32_t size, std::uint32_t material, std::uint32_t shape) {
+    RawPrimitive one;
+    one.data = static_cast<std::uint32_t>(numbers.size());
+    one.size = size;
+    one.material = material;
+    one.shape = shape;
+    raw.push_back(one);
+    numbers.insert(numbers.end(), size, value);
+  };
+  put(1.0, 9, 0, 0);
+  put(1.0, 9, 1, 0);
+  for (int k = 0; k < 3; ++k) put(2.0, 9, 1, 0);
+  put(3.0, 17, 1, 1);
+  put(3.0, 17, 1, 1);
+  put(3.0, 17, 1, 2);
+  drop_copies(&raw, &numbers);
+  REQUIRE(raw.size() == 5);
+  REQUIRE(numbers.size() == 3 * 9 + 2 * 17);
+  const double values[] = {1.0, 1.0, 2.0, 3.0, 3.0};
+  const std::uint32_t shapes[] = {0, 0, 0, 1, 2};
+  std::uint32_t end = 0;
+  for (std::size_t k = 0; k < 5; ++k) {
+    CAPTURE(k);
+    CHECK(raw[k].data == end);
+    CHECK(raw[k].shape == shapes[k]);
+    for (std::uint32_t n = 0; n < raw[k].size; ++n) CHECK(numbers[raw[k].data + n] == values[k]);
+    end += raw[k].size;
   }
 }
