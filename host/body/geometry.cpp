@@ -164,14 +164,18 @@ class Packer {
     std::vector<Key> keys(raw_.size());
     for (std::uint32_t i = 0; i < raw_.size(); ++i) keys[i] = {numbers_[raw_[i].data], i};
     const std::vector<std::uint32_t> material_rank = material_ranks(scene_);
-    sort_in_parts(&keys, [&](const Key& x, const Key& y) {
-      if (x.first != y.first) return x.first < y.first;
+    // By their first numbers alone: the others lie anywhere in memory. Few have the same first number as another.
+    sort_in_parts(
+        &keys, [](const Key& x, const Key& y) { return x.first != y.first ? x.first < y.first : x.index < y.index; });
+    const auto less = [&](const Key& x, const Key& y) {
       const RawPrimitive &a = raw_[x.index], &b = raw_[y.index];
       if (const int order = compared(a, b, numbers_)) return order < 0;
       if (a.material != b.material) return material_rank[a.material] < material_rank[b.material];
       if (a.component != b.component) return a.component < b.component;
       return x.index < y.index;
-    });
+    };
+    sort_equals_in_parts(
+        &keys, [](const Key& x, const Key& y) { return x.first == y.first; }, less);
     std::vector<std::uint32_t> order(keys.size());
     std::transform(keys.begin(), keys.end(), order.begin(), [](const Key& key) { return key.index; });
     keys = {};
@@ -241,7 +245,9 @@ class Packer {
       }
       append_tree(std::move(tree), first_leaf, &g_.nodes);
     }
+    if (are_triangles(raw_)) raw_ = {};  // numbers in turn need none; of many triangles they are much memory
     g_.shapes = in_order(numbers_, raw_, order);
+    numbers_ = {};
     append_planes();
     for (std::size_t row = 0; row < used.size(); ++row) {
       if (used[row]) g_.shape_rows.push_back(static_cast<int>(row));

@@ -56,4 +56,23 @@ void sort_in_parts(std::vector<T>* values, const Less& less, unsigned most = 0) 
   }
 }
 
+/// Of sorted values, sorts each run of those that `equal` takes for equal by a further order, in which no two are.
+template <class T, class Equal, class Less>
+void sort_equals_in_parts(std::vector<T>* values, const Equal& equal, const Less& less) {
+  const unsigned threads = threads_for(values->size());
+  const auto at = [&](std::size_t k) { return values->begin() + static_cast<std::ptrdiff_t>(k); };
+  // Each part begins with a run.
+  std::vector<std::size_t> begins(threads + 1, values->size());
+  for (unsigned k = 0; k < threads; ++k) {
+    begins[k] = values->size() * k / threads;
+    while (begins[k] > 0 && begins[k] < values->size() && equal(*at(begins[k] - 1), *at(begins[k]))) ++begins[k];
+  }
+  in_parts(threads, threads, [&](std::size_t k, std::size_t) {
+    for (std::size_t first = begins[k], end = first; first < begins[k + 1]; first = end) {
+      for (end = first + 1; end < begins[k + 1] && equal(*at(first), *at(end)); ++end) continue;
+      if (end - first > 1) std::sort(at(first), at(end), less);
+    }
+  });
+}
+
 }  // namespace clray

@@ -99,15 +99,14 @@ const double* corners_of(const RawPrimitive& raw, const std::vector<double>& num
   return raw.size == kTriangleSize ? numbers.data() + raw.data : nullptr;
 }
 
-namespace {
-
-/// Whether all are triangles whose numbers follow one another.
 bool are_triangles(const std::vector<RawPrimitive>& raw) {
   for (std::size_t k = 0; k < raw.size(); ++k) {
     if (raw[k].size != kTriangleSize || raw[k].data != kTriangleSize * k) return false;
   }
   return true;
 }
+
+namespace {
 
 /// Copies moved[k] = items[order[k]] of `size` numbers each, by all cores. The places that come next are fetched ahead:
 /// they lie anywhere in memory, and waiting for each would be most of the time.

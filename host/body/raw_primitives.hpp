@@ -27,7 +27,10 @@ Box box_of(const RawPrimitive& raw, const std::vector<double>& numbers);
 /// The nine numbers of a triangle; null for an analytic shape.
 const double* corners_of(const RawPrimitive& raw, const std::vector<double>& numbers);
 
-/// The numbers of primitives in another order: those of raw[order[0]] first. Some may be left out.
+/// Whether all are triangles whose numbers follow one another.
+bool are_triangles(const std::vector<RawPrimitive>& raw);
+/// The numbers of primitives in another order: those of raw[order[0]] first. Some may be left out. `raw` may be empty
+/// where are_triangles() holds.
 std::vector<double> in_order(const std::vector<double>& numbers, const std::vector<RawPrimitive>& raw,
                              const std::vector<std::uint32_t>& order);
 /// Primitives in another order, each with the place that its numbers had.

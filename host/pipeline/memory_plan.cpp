@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kProgram = 300e6;  // the program, drivers and their compilers
 constexpr double kOfNumber = 40.0;  // bytes of a number of the results, while files are written
-constexpr double kOfFace = 250.0;   // bytes of a face, most of them while its place in the tree is found
+constexpr double kOfFace = 280.0;   // bytes of a face, most of them while its place in the tree is found
 constexpr double kLeastSlab = 4e6;  // below which devices would have too little to do
 constexpr double kMegabyte = 1e6;
 

@@ -31,6 +31,24 @@ TEST_CASE("sorting in parts is sorting, of any number") {
   }
 }
 
+TEST_CASE("runs of equals are sorted in parts, whatever their lengths") {
+  using Pair = std::pair<int, std::uint32_t>;
+  std::mt19937 random(6);
+  for (const int kinds : {1, 2, 3, 1000, 70000}) {
+    CAPTURE(kinds);
+    std::vector<Pair> values(100000);
+    for (std::uint32_t k = 0; k < values.size(); ++k) values[k] = {static_cast<int>(random() % kinds), k};
+    std::shuffle(values.begin(), values.end(), random);
+    std::vector<Pair> expected = values;
+    std::sort(expected.begin(), expected.end());
+    std::stable_sort(values.begin(), values.end(), [](const Pair& a, const Pair& b) { return a.first < b.first; });
+    sort_equals_in_parts(
+        &values, [](const Pair& a, const Pair& b) { return a.first == b.first; },
+        [](const Pair& a, const Pair& b) { return a.second < b.second; });
+    CHECK(values == expected);
+  }
+}
+
 TEST_CASE("each element is in one part, and a failure of any part is thrown") {
   for (const unsigned threads : {1u, 2u, 3u, 7u}) {
     std::vector<int> seen(1000, 0);

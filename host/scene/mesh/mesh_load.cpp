@@ -71,25 +71,33 @@ void triangulate_faces(const PolygonSoup& soup, Mesh& mesh, const std::string& p
   }
 }
 
-// An edge as one number: smaller vertex, larger vertex, direction.
-void count_edges(const PolygonSoup& soup, MeshReport& report) {
-  std::vector<std::uint64_t> keys;
-  keys.reserve(soup.corners.size());
-  for (std::size_t f = 0; f < soup.faces(); ++f) {
-    const std::size_t end = soup.face_end(f);
-    for (std::size_t i = soup.first[f]; i < end; ++i) {
-      const std::uint64_t a = soup.corners[i], b = soup.corners[i + 1 < end ? i + 1 : soup.first[f]];
-      if (a != b) keys.push_back(a < b ? a << 33 | b << 1 : b << 33 | a << 1 | 1);
+// Edges by their smaller vertex, each as one number: larger vertex, direction. Few edges share a vertex, so that only
+// short runs are sorted.
+void count_edges(const PolygonSoup& soup, std::size_t vertices, MeshReport& report) {
+  static_assert(kMaxVertices <= std::size_t{1} << 31);
+  const auto each_edge = [&](const auto& take) {
+    for (std::size_t f = 0; f < soup.faces(); ++f) {
+      const std::size_t end = soup.face_end(f);
+      for (std::size_t i = soup.first[f]; i < end; ++i) {
+        const std::uint32_t a = soup.corners[i], b = soup.corners[i + 1 < end ? i + 1 : soup.first[f]];
+        if (a != b) take(std::min(a, b), std::max(a, b) << 1 | (a < b ? 0u : 1u));
+      }
     }
-  }
-  std::sort(keys.begin(), keys.end());
-  for (std::size_t i = 0; i < keys.size();) {
-    std::size_t end = i + 1;
-    while (end < keys.size() && keys[end] >> 1 == keys[i] >> 1) ++end;
-    const std::size_t faces = end - i;
-    if (faces == 1) ++report.boundary_edges;
-    if (faces > 2 || (faces == 2 && keys[i] == keys[i + 1])) ++report.non_manifold_edges;
-    i = end;
+  };
+  std::vector<std::size_t> ends(vertices + 1, 0);  // first of the vertex before, while edges are put in
+  each_edge([&](std::uint32_t smaller, std::uint32_t) { ++ends[smaller + 1]; });
+  for (std::size_t v = 1; v <= vertices; ++v) ends[v] += ends[v - 1];
+  std::vector<std::uint32_t> edges(ends[vertices]);
+  each_edge([&](std::uint32_t smaller, std::uint32_t edge) { edges[ends[smaller]++] = edge; });
+  for (std::size_t v = 0, begin = 0; v < vertices; begin = ends[v++]) {
+    const auto first = edges.begin() + static_cast<std::ptrdiff_t>(begin);
+    std::sort(first, edges.begin() + static_cast<std::ptrdiff_t>(ends[v]));
+    for (std::size_t i = begin, end; i < ends[v]; i = end) {
+      for (end = i + 1; end < ends[v] && edges[end] >> 1 == edges[i] >> 1; ++end) continue;
+      const std::size_t faces = end - i;
+      if (faces == 1) ++report.boundary_edges;
+      if (faces > 2 || (faces == 2 && edges[i] == edges[i + 1])) ++report.non_manifold_edges;
+    }
   }
 }
 
@@ -150,7 +158,7 @@ std::shared_ptr<const Mesh> mesh_of(PolygonSoup soup, double length_unit_m, cons
   mesh->warnings = std::move(soup.warnings);
   scale_to_metres(mesh->vertices, length_unit_m, path);
   mesh->report.faces = soup.faces() + soup.collapsed;
-  count_edges(soup, mesh->report);
+  count_edges(soup, mesh->vertices.size(), mesh->report);
   triangulate_faces(soup, *mesh, path);
   mesh->report.degenerate = soup.collapsed;
   measure(*mesh);

@@ -37,7 +37,7 @@ struct Tally {
   }
 };
 
-/// Vertices and corners are counted in 31 and 32 bits (edge keys hold two vertices and a direction).
+/// Vertices and corners are counted in 31 and 32 bits (an edge is a vertex and a direction in 32).
 constexpr std::uint64_t kMaxVertices = (1ull << 31) - 1;
 constexpr std::uint64_t kMaxCorners = (1ull << 32) - 1;
 
