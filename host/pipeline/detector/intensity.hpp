@@ -67,7 +67,9 @@ inline Estimate intensity_estimate(const PassPlan& plan, const SumReader& read, 
   const std::uint64_t hits = hits_of(plan, read, v, l, c);
   const double rays = hits != 0 ? static_cast<double>(hits) / plan.request.replicates : rays_of(read, v);
   const double solved = solved_intensity(plan, read, v, l, c);
-  Estimate e = estimate_total(intensities(plan, read, v, l, c), rays, solved, most_intensity(plan, v, l, c));
+  const std::vector<double> found = intensities(plan, read, v, l, c);
+  const bool none = std::all_of(found.begin(), found.end(), [](double a) { return a == 0.0; });
+  Estimate e = estimate_total(found, rays, solved, none ? most_intensity(plan, v, l, c) : 0.0);
   e.tiles = plan.request.tiles();
   if (read.adds_to(find_detector(plan, "intensity")->first_block)) {
     e.exact_part = solved;
