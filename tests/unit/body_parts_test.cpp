@@ -63,7 +63,7 @@ TEST_CASE("each element is in one part, and a failure of any part is thrown") {
   }
 }
 
-TEST_CASE("numbers of primitives are brought into any order, with some left out, triangles in place") {
+TEST_CASE("numbers of primitives are brought into any order, with some left out, by any number of threads") {
   std::mt19937 random(6);
   for (const bool shapes : {false, true}) {
     for (const std::size_t count : {1u, 2u, 50u, 1000u, 40000u}) {  // the last by several threads

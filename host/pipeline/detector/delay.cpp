@@ -148,6 +148,7 @@ struct HitSizes {
 };
 
 HitSizes hit_sizes(const RoomResults& x, std::size_t v, std::size_t l, std::size_t c) {
+  if (x.plan.request.exact()) return {};  // no hits, and all bins are known
   const double replicates = x.plan.request.replicates;
   const std::uint64_t hits = hits_of(x.plan, x.read, v, l, c);
   if (hits == 0 && x.read.adds_to(x.detector.first_block + kBins)) {

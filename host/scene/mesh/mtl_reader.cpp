@@ -47,7 +47,7 @@ class MtlReader {
   MtlReader(const std::string& path, const std::string& content) : path_(path), text_(content, path) {
     const std::string_view key = "newmtl";
     std::size_t count = 0;
-    for (std::size_t i = content.find(key); i != std::string_view::npos; i = content.find(key, i + key.size())) ++count;
+    for (std::size_t i = content.find(key); i != std::string::npos; i = content.find(key, i + key.size())) ++count;
     entries_.reserve(count);
     place_of_.reserve(count);
   }

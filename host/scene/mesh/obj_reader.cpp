@@ -82,7 +82,7 @@ class ObjReader {
       double unused = 0.0;
       const std::string_view word = text_.word();
       const std::string trouble = parse_number(word, unused);
-      if (trouble.find("no number") != std::string_view::npos)
+      if (trouble.find("no number") != std::string::npos)
         text_.fail(trouble + "; w or a colour of a vertex (a finite number) was expected");
       if (!trouble.empty()) colours_.add(text_.line(), word);
     }
@@ -214,7 +214,7 @@ PolygonSoup read_obj(const std::string& path, const std::string& content) {
   if (content.compare(0, 2, "\xfe\xff") == 0 || content.compare(0, 2, "\xff\xfe") == 0)
     fail_input(path, 1, "text in UTF-16; save it as UTF-8, which was expected");
   const std::size_t zero = content.find('\0');
-  if (zero != std::string_view::npos) {
+  if (zero != std::string::npos) {
     std::uint64_t line = 1;
     for (std::size_t i = 0; i < zero; ++i) line += content[i] == '\n' || (content[i] == '\r' && content[i + 1] != '\n');
     fail_input(path, line, "binary data; a text OBJ file was expected");

@@ -22,8 +22,8 @@ void read_magic(TextCursor& text) {
     if (c >= '0' && c <= '9') break;
     magic += c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
   }
-  const std::size_t name = magic.size() < 3 ? std::string_view::npos : magic.size() - 3;
-  if (name == std::string_view::npos || magic.compare(name, 3, "OFF") != 0 || magic.find_first_not_of("STCN") != name)
+  const std::size_t name = magic.size() < 3 ? std::string::npos : magic.size() - 3;
+  if (name == std::string::npos || magic.compare(name, 3, "OFF") != 0 || magic.find_first_not_of("STCN") != name)
     text.fail(quote_word(word) + "; OFF in three dimensions was expected");
   text.back(word.size() - magic.size());
   if (!text.more_on_line()) {

@@ -162,8 +162,7 @@ bool begins_with_solid(const std::string& content) {
 PolygonSoup read_stl(const std::string& path, const std::string& content) {
   // The size decides first, since many binary files begin with "solid" as well.
   const bool whole = content.size() >= kHeader && content.size() == kHeader + claimed_facets(content) * kFacet;
-  const bool text =
-      content.size() < kHeader || (begins_with_solid(content) && content.find('\0') == std::string_view::npos);
+  const bool text = content.size() < kHeader || (begins_with_solid(content) && content.find('\0') == std::string::npos);
   return text && !whole ? read_text(path, content) : read_binary(path, content);
 }
 
