@@ -58,7 +58,7 @@ static u32 place_item(const Buffers* g, const __global u32* asked, u64 item, u32
 }
 
 /// A work-item of rays alone: part `part` of a block of points.
-static void trace_alone(const Buffers* g, Tally* tally, u32 first_point, u32 points, u32 part, u32 parts) {
+CLRAY_WAY void trace_alone(const Buffers* g, Tally* tally, u32 first_point, u32 points, u32 part, u32 parts) {
   const __global ClrayPass* pass = g->pass;
   const __global ClrayView* view = g->views + tally->view;
   Sampler sampler = {pass->key0 ^ view->key0, pass->key1 ^ view->key1, pass->epoch,

@@ -8,7 +8,7 @@
 #define CLRAY_SHAPE_PASTE(id, function) shape_##id##_##function
 #define CLRAY_SHAPE_CALL(id, function) CLRAY_SHAPE_PASTE(id, function)
 
-CLRAY_FN i32 shape_intersect(u32 shape, const CLRAY_GLOBAL f64* p, vec3 o, vec3 d, f64 t_max, f64* t, u32* part) {
+CLRAY_WAY i32 shape_intersect(u32 shape, const CLRAY_GLOBAL f64* p, vec3 o, vec3 d, f64 t_max, f64* t, u32* part) {
 #ifdef CLRAY_SHAPE_ONLY
   (void)shape;
   return CLRAY_SHAPE_CALL(CLRAY_SHAPE_ONLY, intersect)(p, o, d, t_max, t, part);

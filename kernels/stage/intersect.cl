@@ -74,7 +74,7 @@ CLRAY_FN const __global f64* primitive_numbers(const Buffers* g, u32 index) {
 }
 
 /// Tests one primitive. A nearer hit replaces *hit, and so does one at equal distance that has precedence.
-static void test_primitive(const Buffers* g, const LocalRay* ray, u32 index, u32 instance, Hit* hit) {
+CLRAY_WAY void test_primitive(const Buffers* g, const LocalRay* ray, u32 index, u32 instance, Hit* hit) {
   const __global ClrayPrimitive* primitive = g->primitives + index;
   const __global f64* data = primitive_numbers(g, index);
   f64 t, t_max = hit->t;
@@ -116,8 +116,8 @@ static void test_primitive(const Buffers* g, const LocalRay* ray, u32 index, u32
 CLRAY_FN u32 leaf_primitive(const Buffers* g, u32 place) { return CLRAY_PIECES ? g->leaves[place] : place; }
 
 /// Walks one tree; with `any` it stops at the first hit of all.
-static void intersect_tree(const Buffers* g, const Ray* ray, const LocalRay* placed, vec3 centre, f64 scale, u32 root,
-                           u32 instance, u32 any, Hit* hit) {
+CLRAY_WAY void intersect_tree(const Buffers* g, const Ray* ray, const LocalRay* placed, vec3 centre, f64 scale,
+                              u32 root, u32 instance, u32 any, Hit* hit) {
   BvhWalk walk;
   u32 first, count;
   bvh_begin(&walk, root, placed->o, placed->d, centre, scale);
@@ -235,7 +235,7 @@ static i32 stage_intersect(const Buffers* g, const Ray* ray, u32 view, Hit* hit)
 }
 
 /// The surface that a ray has hit.
-static Surface stage_surface(const Buffers* g, const Ray* ray, const Hit* hit) {
+CLRAY_WAY Surface stage_surface(const Buffers* g, const Ray* ray, const Hit* hit) {
   Surface surface = hit_surface(g, ray, hit);
   if (!(surface.mu >= 0.0 && surface.mu <= 2.0)) {
     count_event(g->counters, CLRAY_COUNT_LOST);

@@ -12,8 +12,8 @@ static f64 piece_length(const Buffers* g, const Tally* tally, u32 bounce, vec3 f
 
 /// What becomes of a path where its ray ends: at `surface`, or, where it met nothing, in the open. `before`: where the
 /// ray began, from the second on. Returns whether the path goes on, as `ray`.
-static i32 pass_surface(const Buffers* g, Sampler* sampler, Tally* tally, u32 bounce, i32 met, vec3 before, Path* path,
-                        Ray* ray, Surface* surface) {
+CLRAY_WAY i32 pass_surface(const Buffers* g, Sampler* sampler, Tally* tally, u32 bounce, i32 met, vec3 before,
+                           Path* path, Ray* ray, Surface* surface) {
   if (!met) {
     ++tally->escaped;
     if (bounce > 0u) record_escape(g, tally, path, shade_mirror(g, tally, path, ray, surface));
@@ -38,8 +38,8 @@ static i32 pass_surface(const Buffers* g, Sampler* sampler, Tally* tally, u32 bo
 
 /// Follows a path from its start. `known`: whether its first ray is traced; then `met` says whether it hits anything,
 /// and `surface` what.
-static void follow_path(const Buffers* g, Sampler* sampler, Tally* tally, Path* path, Ray ray, u32 known, i32 met,
-                        Surface* surface) {
+CLRAY_WAY void follow_path(const Buffers* g, Sampler* sampler, Tally* tally, Path* path, Ray ray, u32 known, i32 met,
+                           Surface* surface) {
   vec3 before = ray.o;
   ++tally->started;
   for (u32 bounce = 0;; ++bounce) {
@@ -54,8 +54,8 @@ static void follow_path(const Buffers* g, Sampler* sampler, Tally* tally, Path* 
 }
 
 /// Traces the paths of a work-item: every `parts`-th point of a block from the part-th on.
-static void trace_paths(const Buffers* g, Sampler* sampler, Tally* tally, u32 first_point, u32 points, u32 part,
-                        u32 parts) {
+CLRAY_WAY void trace_paths(const Buffers* g, Sampler* sampler, Tally* tally, u32 first_point, u32 points, u32 part,
+                           u32 parts) {
   for (u32 k = part; k < points; k += parts) {
 #if CLRAY_PLACED
     sampler->index = placed_index(sampler, first_point, points, k);

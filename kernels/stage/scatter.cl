@@ -25,7 +25,7 @@ CLRAY_FN void scatter_lanes(const Buffers* g, const Surface* surface, vec3 wo, f
 /// Draws a direction for the path and gives it the throughput after the reflection. Returns 0 if all of it is absorbed.
 /// The lobe coordinate of the first bounce chooses the lane that samples, and what is left of it chooses the lobe, so
 /// that the choice is even and stays stratified.
-CLRAY_FN u32 scatter(const Buffers* g, f64 u[4], u32 bounce, const Surface* surface, Path* path, Ray* ray) {
+CLRAY_WAY u32 scatter(const Buffers* g, f64 u[4], u32 bounce, const Surface* surface, Path* path, Ray* ray) {
   if (CLRAY_LANES > 1 && bounce == 0u) {
     const f64 x = u[0] * (f64)CLRAY_LANES;
     path->hero = min((u32)x, CLRAY_LANES - 1u);
@@ -49,8 +49,8 @@ CLRAY_FN u32 scatter(const Buffers* g, f64 u[4], u32 bounce, const Surface* surf
 }
 
 /// The stage: chooses where the path goes on.
-static Scattering stage_scatter(const Buffers* g, const Sampler* sampler, u32 bounce, const Surface* surface,
-                                Path* path, Ray* ray) {
+CLRAY_WAY Scattering stage_scatter(const Buffers* g, const Sampler* sampler, u32 bounce, const Surface* surface,
+                                   Path* path, Ray* ray) {
   Scattering s;
   s.before = path->throughput;
   s.gain = light_even(0.0);

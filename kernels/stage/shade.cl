@@ -21,16 +21,16 @@ CLRAY_FN i32 faces(const Surface* surface, vec3 o) {
 
 /// Whether something hides connection c from a surface that faces it. On the first bounce of a monostatic view what is
 /// lit is seen: no shadow ray.
-CLRAY_FN i32 hides(const Buffers* g, const Surface* surface, const Path* path, u32 view, u32 bounce, u32 c,
-                   const __global ClrayConnection* connection) {
+CLRAY_WAY i32 hides(const Buffers* g, const Surface* surface, const Path* path, u32 view, u32 bounce, u32 c,
+                    const __global ClrayConnection* connection) {
   if (!CLRAY_SHADOW || !(connection->shadow || bounce > 0u)) return 0;
   if (CLRAY_PACKET && path->known && bounce == 0u && c < CLRAY_HIDDEN) return (path->hidden >> c) & 1u;
   return shadowed(g, surface, view, v3_load(connection->direction));
 }
 
 /// Weights toward connection c, per lane: 0 when the surface does not see it.
-CLRAY_FN i32 shade(const Buffers* g, const Surface* surface, const Path* path, u32 view, u32 bounce, u32 c,
-                   const __global ClrayConnection* connection, Light* weights) {
+CLRAY_WAY i32 shade(const Buffers* g, const Surface* surface, const Path* path, u32 view, u32 bounce, u32 c,
+                    const __global ClrayConnection* connection, Light* weights) {
   const vec3 o = v3_load(connection->direction);
   if (!faces(surface, o)) return 0;
   const BrdfAngles angles = brdf_angles(surface->normal, surface->toward, o);
@@ -51,7 +51,7 @@ CLRAY_FN i32 counts_elsewhere(const Buffers* g, u32 view, u32 primitive) {
 }
 
 /// The stage: records the light that each connection receives from a surface.
-static void stage_shade(const Buffers* g, Tally* tally, u32 bounce, const Surface* surface, const Path* path) {
+CLRAY_WAY void stage_shade(const Buffers* g, Tally* tally, u32 bounce, const Surface* surface, const Path* path) {
   if (bounce == 0u && counts_elsewhere(g, tally->view, surface->primitive)) return;
   for (u32 c = 0; CLRAY_CONNECT && c < CLRAY_CONNECTIONS; ++c) {
     const __global ClrayConnection* connection = connection_of(g, tally, c);
