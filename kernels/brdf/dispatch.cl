@@ -46,8 +46,8 @@ CLRAY_FN f64 brdf_pdf(const CLRAY_GLOBAL ClrayMaterial* m, const CLRAY_GLOBAL f6
 }
 
 /// A direction drawn for wi (local frame, wi.z > 0) from u in (0,1).
-CLRAY_WAY BrdfSample brdf_sample(const CLRAY_GLOBAL ClrayMaterial* m, const CLRAY_GLOBAL f64* tables, vec3 wi,
-                                 f64 u_lobe, f64 u1, f64 u2) {
+CLRAY_FN BrdfSample brdf_sample(const CLRAY_GLOBAL ClrayMaterial* m, const CLRAY_GLOBAL f64* tables, vec3 wi,
+                                f64 u_lobe, f64 u1, f64 u2) {
 #ifdef CLRAY_BRDF_ONLY
   return CLRAY_BRDF_CALL(CLRAY_BRDF_ONLY, sample)(m, tables, wi, u_lobe, u1, u2);
 #else

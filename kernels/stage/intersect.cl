@@ -235,7 +235,7 @@ static i32 stage_intersect(const Buffers* g, const Ray* ray, u32 view, Hit* hit)
 }
 
 /// The surface that a ray has hit.
-CLRAY_WAY Surface stage_surface(const Buffers* g, const Ray* ray, const Hit* hit) {
+static Surface stage_surface(const Buffers* g, const Ray* ray, const Hit* hit) {
   Surface surface = hit_surface(g, ray, hit);
   if (!(surface.mu >= 0.0 && surface.mu <= 2.0)) {
     count_event(g->counters, CLRAY_COUNT_LOST);

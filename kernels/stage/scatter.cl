@@ -49,8 +49,8 @@ CLRAY_WAY u32 scatter(const Buffers* g, f64 u[4], u32 bounce, const Surface* sur
 }
 
 /// The stage: chooses where the path goes on.
-CLRAY_WAY Scattering stage_scatter(const Buffers* g, const Sampler* sampler, u32 bounce, const Surface* surface,
-                                   Path* path, Ray* ray) {
+static Scattering stage_scatter(const Buffers* g, const Sampler* sampler, u32 bounce, const Surface* surface,
+                                Path* path, Ray* ray) {
   Scattering s;
   s.before = path->throughput;
   s.gain = light_even(0.0);
