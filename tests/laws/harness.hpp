@@ -55,7 +55,7 @@ class LawHarness {
   std::vector<std::string> refusals_;
 };
 
-/// Scenes to run in each of the three groups: 20, or 334 with CLRAY_LONG_TESTS=1; frames: fewer for fewer, since each
+/// Scenes to run in each of the three groups: 3, or 334 with CLRAY_LONG_TESTS=1; frames: fewer for fewer, since each
 /// costs some programs.
 int law_scenes();
 int law_frames();

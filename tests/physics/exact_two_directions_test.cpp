@@ -142,7 +142,7 @@ TEST_CASE("two directions: points agree within their errors, bin by bin") {
   for (const MeshPtr& mesh : bodies) {
     clray::Scene scene = seen(mesh, toward(0.7, 0.4), toward(0.2, -1.0));
     const clray::Result exact = solve(scene);
-    rays(scene, 20);
+    many_rays(scene, 20);
     const clray::Result points = run(scene);
     const clray::DelayResult &e = exact.delay.at(0), &p = points.delay.at(0);
     check_estimate(p.intensity_m2_per_sr, e.intensity_m2_per_sr.value, 5e-3, "points");

@@ -56,7 +56,7 @@ void check_same(const std::string& what, Scene scene) {
 
 Scene seen(Scene scene, clray::Vec3 from, int log2_rays) {
   monostatic(scene, from);
-  rays(scene, log2_rays);
+  many_rays(scene, log2_rays);
   return scene;
 }
 

@@ -44,7 +44,7 @@ void compare(clray::Scene scene, clray::Vec3 s, clray::Vec3 o, bool same, Tally*
   CAPTURE(same);
   same ? monostatic(scene, s) : bistatic(scene, s, o);
   if (same) o = s;
-  rays(scene, 17);
+  many_rays(scene, 17);
   scene.trace.sampler = clray::SamplerKind::sobol;  // the documented points, cells apart
   const clray::Result result = run(scene);
   REQUIRE(result.delay.size() == 1);

@@ -2,6 +2,7 @@
 // See scenes.hpp.
 #include "support/scenes.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 
@@ -260,7 +261,21 @@ Scene& window(Scene& scene, double first_s, double last_s, int bins) {
                 {{"start_ns", first_s * 1e9}, {"stop_ns", last_s * 1e9}, {"bins", static_cast<double>(bins)}});
 }
 
+namespace {
+int short_of(int log2_rays) {
+  return long_tests() ? log2_rays : std::min(log2_rays, 15);
+}
+}  // namespace
+
+double fewer(int log2_rays) {
+  return std::pow(2.0, 0.75 * (log2_rays - short_of(log2_rays)));
+}
+
 Scene& rays(Scene& scene, int log2_rays, std::uint64_t seed) {
+  return many_rays(scene, short_of(log2_rays), seed);
+}
+
+Scene& many_rays(Scene& scene, int log2_rays, std::uint64_t seed) {
   scene.trace.rays = 1ull << log2_rays;
   scene.trace.seed = seed;
   return scene;

@@ -22,7 +22,7 @@ namespace {
 
 /// What the self-test says when `text` in kernel file `path` reads `fault` instead.
 std::string refusal(const std::string& path, const std::string& text, const std::string& fault) {
-  OpenedDevice opened = opened_cpu();
+  static OpenedDevice opened = opened_cpu();  // one context: each reads the driver's library of built-in functions
   const KernelFiles files = files_with_fault(path, text, fault);
   try {
     run_self_test(opened, files);

@@ -59,7 +59,7 @@ PassPlan plan_of(const ProgramContent& content) {
 /// What the self-test says when `text` in kernel file `path` reads `fault` instead.
 std::string refusal(const ProgramContent& content, const std::string& path, const std::string& text,
                     const std::string& fault) {
-  OpenedDevice opened = opened_cpu();
+  static OpenedDevice opened = opened_cpu();  // one context: each reads the driver's library of built-in functions
   const KernelFiles files = files_with_fault(path, text, fault);
   PassPlan plan = plan_of(content);
   plan.program.options.optimised = false;  // the fault is in the text
@@ -139,8 +139,8 @@ TEST_CASE("programs of every kind pass") {
   contents.back().walk = "placed";
   contents.push_back(everything());
   contents.back().curved = true;
+  OpenedDevice opened = opened_cpu();
   for (const ProgramContent& content : contents) {
-    OpenedDevice opened = opened_cpu();
     const BuiltInScene built = built_in_scene(content);
     CHECK(in_packets(built.plan) == (content.walk == "packet"));
     CHECK_NOTHROW(run_traced_self_test(opened, plan_of(content), content.specialised, KernelFiles(embedded_kernels())));
@@ -153,7 +153,6 @@ TEST_CASE("a program that traces wrongly is refused") {
   check_refused(mesh, "walk/plain.cl", "k < 4", "k < 3");
   check_refused(mesh, "trace.cl", "clz(parts)", "(clz(parts) + 1u)");
   check_refused(sphere, "stage/intersect.cl", "v3_sub(point, v3_load(data + CLRAY_SHAPE_ORIGIN))", "point");
-  // And elsewhere: ties, boxes, samples, surfaces, lanes, sums.
   // And elsewhere: surfaces, sums, strata, lanes, hinges.
   check_refused(sphere, "brdf/lambert.cl", "CLRAY_INV_PI", "0.3183");
   check_refused(sphere, "detector/delay.cl", "floor(x)", "(x + 0.5)");
