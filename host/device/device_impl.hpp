@@ -63,7 +63,7 @@ struct Device::Impl {
   std::vector<std::string> notes;                     ///< devices that were left out, each a sentence
   std::mutex busy;                                    ///< held by a DeviceUse
   std::atomic<std::thread::id> user;                  ///< the thread of that DeviceUse; none: thread::id()
-  std::map<std::string, int> runs_without_optimiser;  ///< of each program, by program_name()
+  std::map<std::string, int> runs_without_optimiser;  ///< of this process, by program_name()
   std::uint64_t memory_bytes = 0;                     ///< that a run may take, see Device::limit_memory(); 0: any
   double slab_bytes = 128e6;                          ///< of the sums of views that a device holds at once, about
 };

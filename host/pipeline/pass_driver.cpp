@@ -136,13 +136,13 @@ class PassDriver {
       OpenStep step{0, slab.from, slab.points.points, slab.views, 0, {}};
       if (!saved_.step.is_same(step)) saved_.step = std::move(step);
       start(runner);
-      const auto ask = [&](double part) { return keep_going(slab, part, now() - start_); };
+      const auto ask = [&](double part) { return keep_going(slab, part, traced_s()); };
       out_.partial = !runner_->run(&saved_.found, &saved_.step, ask, checkpoint_);
       if (!out_.partial) saved_.step = OpenStep();
     }
     saved_.complete = !out_.partial;
     saver_.save();
-    out_.seconds = now() - start_;
+    out_.seconds = traced_s();
     return std::move(out_);
   }
 
@@ -150,8 +150,10 @@ class PassDriver {
   void start(const std::function<PointRunner&()>& runner) {
     if (runner_ != nullptr) return;
     runner_ = &runner();
-    start_ = now();
+    start_ = now() - runner_->compile_seconds();
   }
+
+  double traced_s() const { return runner_ == nullptr ? 0.0 : now() - start_ - runner_->compile_seconds(); }
 
   /// Takes the courses to where the saved sums are.
   void go_on() {
@@ -184,8 +186,7 @@ class PassDriver {
     const bool same_epoch = !saved_.confirmed.points.empty() && saved_.epochs[v] == state.epoch;
     const std::uint64_t has = !confirm ? saved_.found.points[v] : same_epoch ? saved_.confirmed.points[v] : 0;
     const std::uint64_t wanted = next ? next->points : confirm ? state.confirm_size : state.searched;
-    const bool anew = next && plan_.request.tiles();
-    if (anew || (next ? has <= wanted : has == wanted)) return;
+    if ((next && plan_.request.tiles()) || (next ? has <= wanted : has == wanted)) return;
     throw Error(ErrorCode::usage,
                 fmt::format("the saved run has gone further ({} points of a replicate) than this one asks for ({})",
                             has, wanted));
@@ -236,8 +237,8 @@ class PassDriver {
     if (confirms && step.from == 0 && step.of_all) seconds = 0.0;
     OpenStep open{step.points.epoch, step.from, step.points.points, step.views, 0, {}};
     if (!saved_.step.is_same(open)) saved_.step = std::move(open);
-    const double begin = now();
-    const auto ask = [&](double share) { return keep_going(step, share, seconds + now() - begin); };
+    const double begin = traced_s();
+    const auto ask = [&](double share) { return keep_going(step, share, seconds + traced_s() - begin); };
     if (!runner_->run(&sums, &saved_.step, ask, checkpoint_)) {
       for (Course& course : courses_) {
         if (course.next()) course.cut(stopped_by_);
@@ -245,7 +246,7 @@ class PassDriver {
       return false;
     }
     saved_.step = OpenStep();
-    seconds += now() - begin;
+    seconds += traced_s() - begin;
     note(step, sums, seconds);
     finished_a_step_ = true;
     if (hooks_.progress) hooks_.progress(progress(step, 1.0, seconds));
@@ -299,7 +300,7 @@ class PassDriver {
       stopped_by_ = "interrupt";
       return false;
     }
-    if (time_left_s_ > 0.0 && now() - start_ > time_left_s_) {
+    if (time_left_s_ > 0.0 && traced_s() > time_left_s_) {
       stopped_by_ = "time limit";
       return false;
     }
@@ -346,7 +347,7 @@ class PassDriver {
   }
 
   PassOutcome answer() {
-    out_.seconds = runner_ != nullptr ? now() - start_ : 0.0;
+    out_.seconds = traced_s();
     out_.errors = saved_.errors;
     out_.sums = saver_.hand_over(plan_, saved_.complete);
     out_.target_asked = courses_.front().rules().target_asked;

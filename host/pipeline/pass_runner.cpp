@@ -11,22 +11,49 @@
 namespace clray {
 namespace {
 
+// With the optimiser and packets a program takes about three times as long to build as without. So long are rays traced
+// without; where that was in vain, it was as long again (like skis that are rented for so long before some are bought).
+constexpr double kLonger = 3.0;
+constexpr double kPatience_s = 2.0;                     // at least: the first program may have been kept
+constexpr double kFirstRays = 1u << 18;                 // a first step of more has no earlier one to go by
 constexpr std::uint64_t kMostContributions = 1u << 24;  // per accumulator between drains (scales())
 
 }  // namespace
 
-PassRunner::PassRunner(Device& device, const PassPlan& plan, const Geometry& geometry, const TraceOptions& options,
+PassRunner::PassRunner(Device& device, PassPlan& plan, const Geometry& geometry, const TraceOptions& options,
                        KeptPass* kept, const SharedPass& shared)
-    : plan_(plan), options_(options), shared_(shared) {
-  const double start = now();
-  devices_ = std::make_unique<DeviceTeam>(device, plan, geometry, options, kept);
-  compile_seconds_ = now() - start;
+    : device_(device), plan_(plan), geometry_(geometry), options_(options), kept_(kept), shared_(shared) {
+  build();
 }
 
 PassRunner::~PassRunner() = default;
 
+void PassRunner::build() {
+  const double start = now();
+  devices_ = std::make_unique<DeviceTeam>(device_, plan_, geometry_, options_, kept_);
+  compile_seconds_ += now() - start;
+}
+
+void PassRunner::choose_program(const OpenStep& step) {
+  if (!plan_.lasting) return;
+  const double points =
+      static_cast<double>(step.points - step.from - step.done) * static_cast<double>(step.views.size());
+  const double rays = points * static_cast<double>(items_of(plan_, 1, 1, 1));  // of each point, replicate and pixel
+  const double patience_s = std::max(kPatience_s, kLonger * compile_seconds_);
+  const double expected_s = points_traced_ > 0.0 ? seconds_ * (1.0 + points / points_traced_) : 0.0;
+  const bool few = points_traced_ > 0.0 ? expected_s <= patience_s : rays <= kFirstRays;
+  if (few) return;
+  devices_.reset();
+  kept_->clear();  // there need not be room for both
+  take_lasting_program(&plan_);
+  build();
+}
+
 bool PassRunner::run(Sums* sums, OpenStep* step, const std::function<bool(double)>& keep_going,
                      const Checkpoint& checkpoint) {
+  choose_program(*step);
+  const double begin = now();
+  const double missing = static_cast<double>(step->points - step->from - step->done);
   devices_->set_work(step->epoch, step->views);
   const std::uint64_t bounces = static_cast<std::uint64_t>(plan_.traits.max_bounces) + 1;
   std::uint64_t block = kMostContributions / (2 * bounces);  // a bounce enters a book at most twice
@@ -61,6 +88,8 @@ bool PassRunner::run(Sums* sums, OpenStep* step, const std::function<bool(double
   drain(sums);
   if (step->done > 0) sums->add(plan_.layout, step->more);
   for (const std::uint32_t v : step->views) sums->points[v] = step->points;
+  points_traced_ += missing * static_cast<double>(step->views.size());
+  seconds_ += now() - begin;
   return true;
 }
 

@@ -42,12 +42,13 @@ class PointRunner {
   double compile_seconds_ = 0.0;
 };
 
-/// Traces points as rays: one program and its buffers on every opened device, of other processes, too.
+/// Traces points as rays: one program and its buffers on every opened device, of other processes, too. Goes on with the
+/// plan's lasting program before rays take longer without it than it takes to build.
 class PassRunner : public PointRunner {
  public:
   /// Takes what suits the plan from *kept, and leaves there what the next runner may take.
-  PassRunner(Device& device, const PassPlan& plan, const Geometry& geometry, const TraceOptions& options,
-             KeptPass* kept, const SharedPass& shared = {});
+  PassRunner(Device& device, PassPlan& plan, const Geometry& geometry, const TraceOptions& options, KeptPass* kept,
+             const SharedPass& shared = {});
   ~PassRunner() override;
 
   /// Adds the points that are missing.
@@ -58,14 +59,20 @@ class PassRunner : public PointRunner {
   void drain(Sums* sums);
   void drain_into(OpenStep* step, std::uint64_t done);
   void forget();
+  void build();
+  void choose_program(const OpenStep& step);
   bool run_block(const OpenStep& step, std::uint32_t first_point, std::uint32_t points,
                  const std::function<bool(double)>& keep_going);
 
-  const PassPlan& plan_;
+  Device& device_;
+  PassPlan& plan_;
+  const Geometry& geometry_;
   const TraceOptions& options_;
+  KeptPass* const kept_;
   std::unique_ptr<DeviceTeam> devices_;
   const SharedPass shared_;
-  std::uint64_t block_points_ = kFirstPoints;  // of the next block, where sums are saved
+  double points_traced_ = 0.0, seconds_ = 0.0;  // of all views, with the program that the plan begins with
+  std::uint64_t block_points_ = kFirstPoints;   // of the next block, where sums are saved
 };
 
 }  // namespace clray

@@ -73,6 +73,7 @@ struct Specialised {
   std::string entry = "trace.cl";  ///< the kernel file that it is built from
   ProgramOptions options;
   bool walk_is_free = false;  ///< the scene leaves it to the devices
+  bool open_ended = false;    ///< an error ends the pass: few rays may do
   std::vector<std::string> kept, left_out;
 };
 
@@ -91,6 +92,7 @@ struct PassPlan {
   UnsolvedPrimitives unsolved;  ///< where curved shapes stand among faces that are solved; else empty
   ClrayPass constants{};
   Specialised program;
+  std::optional<Specialised> lasting;  ///< the program to go on with where rays take long; none: with the same
   std::size_t slab_views = 0;          ///< whose sums a device holds at once; 0: all
   std::shared_ptr<FirstBounce> first;  ///< of a pass whose first bounce is solved; else none
 };
@@ -133,8 +135,12 @@ void set_walk(const std::string& walk, PassPlan* plan);
 
 /// Fits programs to the devices: packets need much private memory, so they are for CPUs, and neighbours side by side
 /// are for all others; the compiler's optimiser is left out for few rays on CPUs alone, and not where it is known that
-/// the program is used again.
+/// the program is used again. Where an error ends a pass, it begins without it and without
+/// packets, and has its lasting program beside.
 void fit_to(Device& device, bool used_again, std::vector<PassPlan>* plans);
+
+/// Goes on with the lasting program, if there is one.
+void take_lasting_program(PassPlan* plan);
 
 /// The detector of this id in a pass, or null.
 const PassDetector* find_detector(const PassPlan& plan, const std::string& id);

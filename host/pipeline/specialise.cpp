@@ -2,8 +2,10 @@
 // What the program of a pass contains, and the reasons: the rows of the tables that the scene uses, the kinds of rays
 // and sums that the pass needs, and its sizes. What a scene does not need is not compiled.
 #include <algorithm>
+#include <utility>
 
 #include "device/device_impl.hpp"
+#include "device/kernel_cache.hpp"
 #include "pipeline/detector/room.hpp"
 #include "pipeline/exact_sights.hpp"
 #include "pipeline/plan.hpp"
@@ -21,7 +23,8 @@ constexpr std::uint64_t kManyRays = 1u << 20;
 // The compiler's optimiser takes one to four seconds, once. Without it rays are five times as slow: so few of them take
 // less than a tenth of a second more.
 constexpr std::uint64_t kManyForOptimiser = 1u << 15;
-constexpr int kRunsWithoutOptimiser = 8;  // of one program in one process
+constexpr int kRunsWithoutOptimiser = 8;  // of one program
+constexpr const char* kFewRays = "so few rays are traced sooner without";
 constexpr const char* kOptimiser = "the compiler's optimiser";
 
 constexpr const char* kWalk = "walk ";
@@ -43,7 +46,7 @@ void set_walk(const std::string& walk, Specialised* program) {
 /// Lets the program be compiled for the speed of its rays, or for a start as soon as possible.
 void set_optimised(bool optimised, Specialised* program) {
   program->options.optimised = optimised;
-  const std::string line = std::string(kOptimiser) + ": so few rays are traced before it ends";
+  const std::string line = std::string(kOptimiser) + ": " + kFewRays;
   std::vector<std::string>& out = program->left_out;
   if (optimised)
     out.erase(std::remove(out.begin(), out.end(), line), out.end());
@@ -63,6 +66,8 @@ class Specialiser {
     tables();
     walk();
     if (at_most(kManyForOptimiser)) set_optimised(false, &out_);
+    const TraceOptions& t = scene_.trace;
+    out_.open_ended = t.rays == 0 && t.target_error_percent > 0.0 && t.walk != "packet" && !at_most(kManyForOptimiser);
     detectors();
     rays();
     sizes();
@@ -220,7 +225,7 @@ class Specialiser {
     if (moving_parts()) return "a component is hinged";
     if (plan_.request.replicates != 16) return "they are for 16 replicates";
     if (all_) return "generic program (--no-specialise)";
-    return asked == "auto" && at_most(kManyRays - 1) ? "so few rays are traced sooner without" : "";
+    return asked == "auto" && at_most(kManyRays - 1) ? kFewRays : "";
   }
 
   void walk() {
@@ -302,14 +307,37 @@ class Specialiser {
   Specialised out_;
 };
 
-/// Whether the optimised program stands ready for every device, or the other was used often enough in this process.
+/// Whether a run is one of the first of its program on that device, in any process, and counts it.
+bool among_first_runs(const OpenedDevice& opened, const std::string& program) {
+  for (int k = 1; k <= kRunsWithoutOptimiser; ++k) {
+    const std::string run = "run " + std::to_string(k) + " without the optimiser\n" + program;
+    if (remembered(opened, run)) continue;
+    remember(opened, run);
+    return true;
+  }
+  return false;
+}
+
+/// Whether the optimised program stands ready for every device, or the other was used often enough.
 bool optimiser_pays(Device& device, const Specialised& program) {
   Device::Impl& impl = device.impl();
-  if (++impl.runs_without_optimiser[program_name(program.entry, program.options)] > kRunsWithoutOptimiser) return true;
   ProgramOptions options = program.options;
   options.optimised = true;
+  const std::string name = program_name(program.entry, options);
+  if (++impl.runs_without_optimiser[name] > kRunsWithoutOptimiser) return true;
+  if (!among_first_runs(impl.devices.front(), name)) return true;
   return std::all_of(impl.devices.begin(), impl.devices.end(),
                      [&](const OpenedDevice& opened) { return program_is_kept(opened, program.entry, options); });
+}
+
+/// Begins with a program that stands sooner.
+void begin_without_optimiser(PassPlan* plan) {
+  plan->lasting = plan->program;
+  if (in_packets(*plan)) {
+    set_walk("plain", &plan->program);
+    plan->program.left_out.push_back(std::string(kPackets) + kFewRays);
+  }
+  set_optimised(false, &plan->program);
 }
 
 }  // namespace
@@ -336,9 +364,15 @@ void fit_to(Device& device, bool used_again, std::vector<PassPlan>* plans) {
     Specialised& program = plan.program;
     if (!all_cpus && in_packets(plan)) program.left_out.push_back(std::string(kPackets) + "they are for CPUs");
     if (!all_cpus && program.walk_is_free) set_walk("placed", &program);
-    if (!program.options.optimised && (used_again || !all_cpus || optimiser_pays(device, program)))
-      set_optimised(true, &program);
+    if (plan.request.without_rays() || (program.options.optimised && !program.open_ended)) continue;
+    const bool pays = used_again || !all_cpus || optimiser_pays(device, program);
+    if (pays && !program.options.optimised) set_optimised(true, &program);
+    if (!pays && program.options.optimised) begin_without_optimiser(&plan);
   }
+}
+
+void take_lasting_program(PassPlan* plan) {
+  if (plan->lasting) plan->program = *std::exchange(plan->lasting, std::nullopt);
 }
 
 Specialised specialise(const Scene& scene, const Geometry& geometry, const PassPlan& plan) {

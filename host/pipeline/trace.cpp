@@ -63,13 +63,16 @@ class Tracer {
     const double start = now();
     result_.seed = scene_.trace.seed;
     result_.replicates = scene_.trace.replicates;
-    const Planned planned = plan_scene(kept_, scene_);
+    Planned planned = plan_scene(kept_, scene_);
     const Geometry& geometry = planned.geometry;
     result_.mesh = geometry.report;
     result_.extent_m = geometry.extent;
     result_.seconds.bvh = now() - start;
     result_.digest = kFnvStart;
     passes_ = passes_of(planned.plans);
+    if (ranks_ != nullptr) {  // they build programs once
+      for (PassPlan& plan : planned.plans) take_lasting_program(&plan);
+    }
     if (ranks_ != nullptr && ranks_->number() != 0) {
       help_with_run(*ranks_, device_, passes_, geometry, scene_.trace);
       return {};
@@ -104,7 +107,7 @@ class Tracer {
     return std::make_unique<SharedViews>(std::move(own), plan, shared(plan));
   }
 
-  void take_passes(const Planned& planned) {
+  void take_passes(Planned& planned) {
     const Geometry& geometry = planned.geometry;
     for (std::size_t k = 0; k < planned.plans.size(); ++k) {
       const double left = scene_.trace.time_limit_s > 0.0 ? std::max(1e-6, scene_.trace.time_limit_s - spent_) : 0.0;
@@ -125,7 +128,7 @@ class Tracer {
   }
 
   /// Traces or solves a pass, or solves its first bounce and traces the rest.
-  PassOutcome outcome_of(const PassPlan& plan, const Geometry& geometry, KeptPass* kept, double time_left_s) {
+  PassOutcome outcome_of(PassPlan& plan, const Geometry& geometry, KeptPass* kept, double time_left_s) {
     if (plan.request.exact()) return solved(plan, geometry, time_left_s);
     if (plan.request.tiles()) {
       const auto make = [&] { return by_views(std::make_unique<TilesRunner>(device_, plan, geometry), plan); };
@@ -164,10 +167,10 @@ class Tracer {
     std::unique_ptr<PointRunner> runner;
     const auto made = [&]() -> PointRunner& {
       runner = make();
-      result_.seconds.compile += runner->compile_seconds();
       return *runner;
     };
     PassOutcome outcome = drive_pass(geometry, plan, made, scene_.trace, hooks_, saver_, time_left_s);
+    if (runner != nullptr) result_.seconds.compile += runner->compile_seconds();
     spent_ += outcome.seconds;
     return outcome;
   }
@@ -292,9 +295,9 @@ Result trace_with(Preparation& kept, const Scene& scene, const TraceHooks& hooks
 void prepare(Preparation& kept, const Scene& scene) {
   check_scene(scene);
   const DeviceUse use(kept.device());
-  const Planned planned = plan_scene(kept, scene);
+  Planned planned = plan_scene(kept, scene);
   for (std::size_t k = 0; k < planned.plans.size(); ++k) {
-    const PassPlan& plan = planned.plans[k];
+    PassPlan& plan = planned.plans[k];
     if (plan.request.exact()) ExactPass(kept.device(), plan, planned.geometry);
     if (plan.request.tiles()) TilesRunner(kept.device(), plan, planned.geometry);
     if (plan.request.without_rays()) continue;
@@ -367,7 +370,8 @@ std::string kernel_source(const Scene& scene, Device& device) {
   check_scene(scene);
   const DeviceUse use(device);
   Preparation kept(device);
-  const Planned planned = plan_scene(kept, scene);
+  Planned planned = plan_scene(kept, scene);
+  take_lasting_program(&planned.plans.front());
   const Specialised& program = planned.plans.front().program;
   return program_source(device.impl().devices.front(), program.entry, program.options);
 }

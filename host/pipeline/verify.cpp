@@ -171,6 +171,7 @@ Verified verify(const Scene& scene, Device& device, const std::string& file, dou
   std::mt19937_64 random(seed);
   Verified out;
   for (PassPlan& plan : planned.plans) {
+    take_lasting_program(&plan);
     // Its work-items have points of one replicate, and those of a replicate follow one another.
     if (!plan.request.without_rays()) set_walk("plain", &plan);
     if (plan.first)

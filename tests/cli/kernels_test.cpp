@@ -127,3 +127,24 @@ TEST_CASE("few rays are traced before the compiler optimises, unless it already 
   CHECK_FALSE(explained("4096", "plain"));
   CHECK(digest(scratch) == soon);
 }
+
+TEST_CASE("a run that an error ends begins without the optimiser, in its first eight runs") {
+  const Scratch scratch;
+  spit(scratch / "square.obj", square());
+  const std::vector<std::string> home{"POCL_CACHE_DIR=" + (scratch / "kernels"),
+                                      "XDG_CACHE_HOME=" + (scratch / "cache")};
+  const auto explained = [&] {
+    const auto outcome = clray(scratch,
+                               {"--device", "cpu", "--target-error", "20", "--method", "points", "--explain",
+                                "--no-plots", "--out", "out", "square.obj"},
+                               home);
+    CAPTURE(outcome.err);
+    CHECK(outcome.status == 0);
+    return contains(outcome.out + outcome.err, "- the compiler's optimiser");
+  };
+  CHECK(explained());
+  const std::string soon = digest(scratch);
+  for (int run = 2; run <= 8; ++run) CHECK(explained());
+  CHECK_FALSE(explained());
+  CHECK(digest(scratch) == soon);
+}

@@ -33,7 +33,8 @@ struct Pass {
   Sums run(std::uint64_t points) const { return run(points, Sums(plan.layout)); }
   Sums run(std::uint64_t points, Sums sums) const {
     clray::KeptPass kept;
-    clray::PassRunner runner(device(), plan, geometry, scene.trace, &kept);
+    clray::PassPlan own = plan;  // a runner may take another program
+    clray::PassRunner runner(device(), own, geometry, scene.trace, &kept);
     clray::OpenStep step;
     step.from = sums.points.front();
     step.points = points;
