@@ -11,8 +11,8 @@
 namespace clray {
 namespace {
 
-// With the optimiser and packets a program takes about three times as long to build as without. So long are rays traced
-// without; where that was in vain, it was as long again (like skis that are rented for so long before some are bought).
+// With the optimiser and packets a program takes about three times as long to build as without. Rays are traced without
+// for at most so long. So a run of few rays is spared that time, and one of many takes at most twice as long to build.
 constexpr double kLonger = 3.0;
 constexpr double kPatience_s = 2.0;                     // at least: the first program may have been kept
 constexpr double kFirstRays = 1u << 18;                 // a first step of more has no earlier one to go by
@@ -34,24 +34,24 @@ void PassRunner::build() {
   compile_seconds_ += now() - start;
 }
 
-void PassRunner::choose_program(const OpenStep& step) {
-  if (!plan_.lasting) return;
+bool PassRunner::is_long(const OpenStep& step) const {
   const double points =
       static_cast<double>(step.points - step.from - step.done) * static_cast<double>(step.views.size());
   const double rays = points * static_cast<double>(items_of(plan_, 1, 1, 1));  // of each point, replicate and pixel
   const double patience_s = std::max(kPatience_s, kLonger * compile_seconds_);
   const double expected_s = points_traced_ > 0.0 ? seconds_ * (1.0 + points / points_traced_) : 0.0;
-  const bool few = points_traced_ > 0.0 ? expected_s <= patience_s : rays <= kFirstRays;
-  if (few) return;
-  devices_.reset();
-  kept_->clear();  // there need not be room for both
-  take_lasting_program(&plan_);
-  build();
+  return points_traced_ > 0.0 ? expected_s > patience_s : rays > kFirstRays;
 }
 
 bool PassRunner::run(Sums* sums, OpenStep* step, const std::function<bool(double)>& keep_going,
                      const Checkpoint& checkpoint) {
-  choose_program(*step);
+  if (plan_.lasting && is_long(*step)) {
+    if (!keep_going(0.0)) return false;  // before it waits for a compiler
+    devices_.reset();
+    kept_->clear();  // there need not be room for both
+    take_lasting_program(&plan_);
+    build();
+  }
   const double begin = now();
   const double missing = static_cast<double>(step->points - step->from - step->done);
   devices_->set_work(step->epoch, step->views);

@@ -60,7 +60,8 @@ class PassRunner : public PointRunner {
   void drain_into(OpenStep* step, std::uint64_t done);
   void forget();
   void build();
-  void choose_program(const OpenStep& step);
+  /// Whether rays of a step are likely to take longer with the plan's first program than its lasting one to build.
+  bool is_long(const OpenStep& step) const;
   bool run_block(const OpenStep& step, std::uint32_t first_point, std::uint32_t points,
                  const std::function<bool(double)>& keep_going);
 

@@ -135,8 +135,8 @@ void set_walk(const std::string& walk, PassPlan* plan);
 
 /// Fits programs to the devices: packets need much private memory, so they are for CPUs, and neighbours side by side
 /// are for all others; the compiler's optimiser is left out for few rays on CPUs alone, and not where it is known that
-/// the program is used again. Where an error ends a pass, it begins without it and without
-/// packets, and has its lasting program beside.
+/// the program is used again. Where an error ends a pass, the pass begins without it
+/// and without packets, and has its lasting program beside.
 void fit_to(Device& device, bool used_again, std::vector<PassPlan>* plans);
 
 /// Goes on with the lasting program, if there is one.

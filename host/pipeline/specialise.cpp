@@ -23,7 +23,7 @@ constexpr std::uint64_t kManyRays = 1u << 20;
 // The compiler's optimiser takes one to four seconds, once. Without it rays are five times as slow: so few of them take
 // less than a tenth of a second more.
 constexpr std::uint64_t kManyForOptimiser = 1u << 15;
-constexpr int kRunsWithoutOptimiser = 8;  // of one program
+constexpr int kRunsWithoutOptimiser = 8;  // of one program, by any process
 constexpr const char* kFewRays = "so few rays are traced sooner without";
 constexpr const char* kOptimiser = "the compiler's optimiser";
 
@@ -324,10 +324,10 @@ bool optimiser_pays(Device& device, const Specialised& program) {
   ProgramOptions options = program.options;
   options.optimised = true;
   const std::string name = program_name(program.entry, options);
-  if (++impl.runs_without_optimiser[name] > kRunsWithoutOptimiser) return true;
-  if (!among_first_runs(impl.devices.front(), name)) return true;
-  return std::all_of(impl.devices.begin(), impl.devices.end(),
-                     [&](const OpenedDevice& opened) { return program_is_kept(opened, program.entry, options); });
+  const auto is_kept = [&](const OpenedDevice& opened) { return program_is_kept(opened, program.entry, options); };
+  return ++impl.runs_without_optimiser[name] > kRunsWithoutOptimiser ||
+         std::all_of(impl.devices.begin(), impl.devices.end(), is_kept) ||
+         !among_first_runs(impl.devices.front(), name);
 }
 
 /// Begins with a program that stands sooner.
