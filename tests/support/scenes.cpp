@@ -261,18 +261,8 @@ Scene& window(Scene& scene, double first_s, double last_s, int bins) {
                 {{"start_ns", first_s * 1e9}, {"stop_ns", last_s * 1e9}, {"bins", static_cast<double>(bins)}});
 }
 
-namespace {
-int short_of(int log2_rays) {
-  return long_tests() ? log2_rays : std::min(log2_rays, 15);
-}
-}  // namespace
-
-double fewer(int log2_rays) {
-  return std::pow(2.0, 0.75 * (log2_rays - short_of(log2_rays)));
-}
-
 Scene& rays(Scene& scene, int log2_rays, std::uint64_t seed) {
-  return many_rays(scene, short_of(log2_rays), seed);
+  return many_rays(scene, long_tests() ? log2_rays : std::min(log2_rays, 15), seed);
 }
 
 Scene& many_rays(Scene& scene, int log2_rays, std::uint64_t seed) {

@@ -63,12 +63,8 @@ clray::Scene& window(clray::Scene& scene, double first_s, double last_s, int bin
 /// 2^log2_rays rays. More than 2^15 only with CLRAY_LONG_TESTS: up to there CPUs compile without the optimiser, in half
 /// the time.
 clray::Scene& rays(clray::Scene& scene, int log2_rays, std::uint64_t seed = 1);
-/// As many whatever is asked: for what few rays cannot show.
+/// As many whatever is asked: for bounds of the error that few rays do not keep.
 clray::Scene& many_rays(clray::Scene& scene, int log2_rays, std::uint64_t seed = 1);
-
-/// How much larger errors may be where rays() takes fewer than 2^log2_rays: the 3/4th power of the ratio
-/// (docs/error.md: slopes of 0.54 to 0.98 for stratified points and Sobol's).
-double fewer(int log2_rays);
 
 /// Whether CLRAY_LONG_TESTS asks for what takes many minutes.
 bool long_tests();
