@@ -55,7 +55,9 @@ Function* real(const char* name) {
 }
 
 struct Total {
+  /// Of clray alone: what it starts loads this library, too, and a sanitizer's symbolizer ends after it.
   ~Total() {
+    if (strcmp(program_invocation_short_name, "clray") != 0) return;
     const char* name = getenv("CLRAY_FAULT_TOTAL");
     FILE* file = name != nullptr ? fopen(name, "w") : nullptr;
     if (file == nullptr) return;
