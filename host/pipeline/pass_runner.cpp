@@ -11,11 +11,11 @@
 namespace clray {
 namespace {
 
-// With the optimiser and packets a program takes about three times as long to build as without. Rays are traced without
-// for at most so long. So a run of few rays is spared that time, and one of many takes at most twice as long to build.
+// A program with the optimiser and packets takes about three times as long to build as one without. So rays are traced
+// without for at most that long: a run of few rays is spared the building, one of many pays at most twice for it.
 constexpr double kLonger = 3.0;
-constexpr double kPatience_s = 2.0;                     // at least: the first program may have been kept
-constexpr double kFirstRays = 1u << 18;                 // a first step of more has no earlier one to go by
+constexpr double kPatience_s = 2.0;      // at least, since the first program may have been kept
+constexpr double kFirstRays = 1u << 18;  // the most of a first step, of which no earlier one tells the time
 constexpr std::uint64_t kMostContributions = 1u << 24;  // per accumulator between drains (scales())
 
 }  // namespace
@@ -38,9 +38,9 @@ bool PassRunner::is_long(const OpenStep& step) const {
   const double points =
       static_cast<double>(step.points - step.from - step.done) * static_cast<double>(step.views.size());
   const double rays = points * static_cast<double>(items_of(plan_, 1, 1, 1));  // of each point, replicate and pixel
-  const double patience_s = std::max(kPatience_s, kLonger * compile_seconds_);
-  const double expected_s = points_traced_ > 0.0 ? seconds_ * (1.0 + points / points_traced_) : 0.0;
-  return points_traced_ > 0.0 ? expected_s > patience_s : rays > kFirstRays;
+  if (points_traced_ == 0.0) return rays > kFirstRays;
+  const double expected_s = seconds_ * (1.0 + points / points_traced_);
+  return expected_s > std::max(kPatience_s, kLonger * compile_seconds_);
 }
 
 bool PassRunner::run(Sums* sums, OpenStep* step, const std::function<bool(double)>& keep_going,
