@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::uint64_t kPushes = 6;   // of a component: force (3), torque (3)
 constexpr std::uint32_t kThermal = 2;  // key
+constexpr double kMostPush = 2.0;      // that light hands over of its momentum: with heat five thirds
 
 /// What one unit of light that a face receives does to it: the momentum that it hands over, less that of what is
 /// reflected, and of heat that goes along the normal.
@@ -87,24 +88,35 @@ double solved_push(const PassPlan& plan, const PassDetector& d, const SumReader&
   return sum * (k >= 3 ? plan.scales.lever_m : 1.0);
 }
 
+/// Whether any light pushes these components, found or solved.
+bool is_pushed(const RoomResults& x, std::size_t v, const LaneRecord& record, std::size_t first, std::size_t last) {
+  for (std::uint64_t k = 0; k < 3; ++k) {
+    if (solved_push(x.plan, x.detector, x.read, v, record, first, last, k) != 0.0) return true;
+    for (const double one : push(x.plan, x.detector, x.read, v, record, first, last, k)) {
+      if (one != 0.0) return true;
+    }
+  }
+  return false;
+}
+
 VectorEstimate vector_of(const RoomResults& x, std::size_t v, const LaneRecord& record, std::size_t first,
                          std::size_t last, std::uint64_t k) {
   VectorEstimate out;
+  const double lever_m = k >= 3 ? x.plan.scales.lever_m : 1.0;
+  // Where rays found nothing, they may have missed what hands over all that light can.
+  const double most = is_pushed(x, v, record, first, last) ? 0.0 : kMostPush * x.plan.beams.area_m2[v] * lever_m;
   const bool first_exact = x.read.adds_to(x.detector.first_block);
   for (int axis = 0; axis < 3; ++axis) {
     const std::uint64_t number = k + static_cast<std::uint64_t>(axis);
     const double solved = solved_push(x.plan, x.detector, x.read, v, record, first, last, number);
-    const Estimate e =
-        estimate_total(push(x.plan, x.detector, x.read, v, record, first, last, number), rays_of(x.read, v), solved);
+    const Estimate e = estimate_total(push(x.plan, x.detector, x.read, v, record, first, last, number),
+                                      rays_of(x.read, v), solved, most);
     if (first_exact) out.exact_part[axis] = solved;
     out.value[axis] = e.value;
     out.standard_error[axis] = e.standard_error;
     out.relative_variance_of_variance[axis] = e.relative_variance_of_variance;
   }
-  if (x.plan.request.exact() || first_exact) {
-    // Light hands over at most twice its momentum, and five thirds of it with heat.
-    out.rounding_bound = 2.0 * x.read.area_rounding(v) * (k >= 3 ? x.plan.scales.lever_m : 1.0);
-  }
+  if (x.plan.request.exact() || first_exact) out.rounding_bound = kMostPush * x.read.area_rounding(v) * lever_m;
   return out;
 }
 
@@ -121,7 +133,9 @@ PressureResult pressure_record(const RoomResults& x, std::size_t v, const LaneRe
     p.component_m2.push_back(vector_of(x, v, record, k, k + 1, 0));
     p.component_m3.push_back(vector_of(x, v, record, k, k + 1, 3));
   }
-  p.absorbed_m2 = estimate_total(book(x.plan, x.read, v, record, CLRAY_BOOK_ABSORBED), rays_of(x.read, v));
+  const bool dark = !is_pushed(x, v, record, 0, components);
+  p.absorbed_m2 = estimate_total(book(x.plan, x.read, v, record, CLRAY_BOOK_ABSORBED), rays_of(x.read, v), 0.0,
+                                 dark ? x.plan.beams.area_m2[v] : 0.0);
   if (x.plan.request.exact()) p.absorbed_m2.rounding_bound = x.read.area_rounding(v);
   return p;
 }
@@ -152,8 +166,7 @@ void pressure_results(const RoomResults& x) {
   for (std::size_t v = 0; v < x.plan.layout.shape.views; ++v) {
     for (const LaneRecord& record : lane_records(x.plan.request.lanes)) {
       PressureResult p = pressure_record(x, v, record);
-      const VectorEstimate& force = p.coefficient_m2;
-      x.note(p.key, force.value != Vec3(0.0) || force.standard_error != Vec3(0.0));
+      x.note(p.key, is_pushed(x, v, record, 0, x.plan.traits.components));
       PressureResult* known = x.known(x.out.pressure, p.key, record);
       if (known != nullptr) {
         add_pressure(p, known);
