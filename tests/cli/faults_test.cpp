@@ -74,7 +74,7 @@ TEST_CASE("whichever call fails while a result is written: status 5 or a whole r
   std::mt19937 random(3);
   const bool all = ::getenv("CLRAY_LONG_TESTS") != nullptr;
   int failed = 0;
-  for (int k = 0; k < (all ? calls : 12); ++k) {
+  for (int k = 0; k < (all ? calls : 8); ++k) {
     REQUIRE(run("1", {}).status == 0);
     // The last calls force the files to disk and put the folder in place.
     const int from = k % 2 == 0 ? 0 : calls - 60;

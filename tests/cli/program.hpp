@@ -3,6 +3,7 @@
 #pragma once
 
 #include <fcntl.h>
+#include <poll.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <sys/resource.h>
@@ -113,6 +114,19 @@ class Running {
 inline Outcome clray(const Scratch& scratch, const std::vector<std::string>& arguments,
                      const std::vector<std::string>& environment = {}) {
   return Running(scratch, arguments, environment).wait();
+}
+
+/// Waits until a run that writes out.sums every second has found something, which a first signal then saves: whether it
+/// has within two minutes.
+inline bool has_found_something(const Scratch& scratch) {
+  const auto begin = std::filesystem::file_time_type::clock::now();
+  for (int k = 0; k < 2400; ++k) {
+    std::error_code none;
+    const auto written = std::filesystem::last_write_time(scratch / "out.sums", none);
+    if (!none && written > begin) return true;
+    ::poll(nullptr, 0, 50);
+  }
+  return false;
 }
 
 inline bool contains(const std::string& text, const std::string& part) {

@@ -96,30 +96,35 @@ TEST_CASE("sampled weight is eval times cosine over pdf, its mean the reflectanc
       CAPTURE(mu);
       const vec3 wi = incident(mu);
       const int count = 200000;
-      double sum = 0.0, sum2 = 0.0, worst = 0.0;
+      double sum = 0.0, sum2 = 0.0, worst = 0.0, worst_pdf = 0.0, worst_length = 0.0;
+      int wrong_failures = 0, below = 0, wrong_mirrors = 0;
       for (int k = 0; k < count; ++k) {
         const double lobe = uniform(random), u = uniform(random), v = uniform(random);  // in this order everywhere
         const BrdfSample s = m.sample(wi, lobe, u, v);
         if (!s.ok) {
-          REQUIRE(s.weight == 0.0);
+          wrong_failures += !(s.weight == 0.0);
           continue;
         }
         const BrdfAngles a = brdf_angles(kUp, wi, s.wo);
-        REQUIRE(s.wo.z > 0.0);
-        REQUIRE(std::fabs(v3_length(s.wo) - 1.0) < 1e-15);
+        below += !(s.wo.z > 0.0);
+        worst_length = std::fmax(worst_length, std::fabs(v3_length(s.wo) - 1.0));
         sum += s.weight;
         sum2 += s.weight * s.weight;
         if (s.delta) {
-          REQUIRE(a.sin2_half < 1e-30);
-          REQUIRE(s.weight == m.reflectance(mu));
-          REQUIRE(m.eval(a) == 0.0);
-          REQUIRE(m.pdf(a) == 0.0);
+          wrong_mirrors +=
+              !(a.sin2_half < 1e-30 && s.weight == m.reflectance(mu) && m.eval(a) == 0.0 && m.pdf(a) == 0.0);
           continue;
         }
-        REQUIRE(s.pdf == doctest::Approx(m.pdf(a)).epsilon(1e-13));
+        const double pdf = m.pdf(a);
+        worst_pdf = std::max(worst_pdf, std::isfinite(s.pdf) ? std::fabs(s.pdf - pdf) / pdf : 1.0);
         worst = std::max(worst, std::fabs(s.weight * s.pdf - m.eval(a) * a.mu_o) / std::max(1e-300, s.weight * s.pdf));
       }
       CHECK(worst < 1e-13);
+      CHECK(worst_pdf < 1e-13);
+      CHECK(worst_length < 1e-15);
+      CHECK(wrong_failures == 0);
+      CHECK(below == 0);
+      CHECK(wrong_mirrors == 0);
       const double mean = sum / count, error = std::sqrt(std::max(0.0, sum2 / count - mean * mean) / count);
       // 6 standard errors; 1e-5 for rare large weights that a small sample may miss. What happens once in 10,000 draws
       // happens 20 times here, so that the error knows of it.

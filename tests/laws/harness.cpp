@@ -170,7 +170,7 @@ std::vector<Comparison> compare(const Trial& trial, const Result& first, const R
 int law_scenes() {
   const char* asked = std::getenv("CLRAY_LAWS_SCENES");
   if (asked != nullptr) return std::atoi(asked);
-  return long_tests() ? 334 : 3;
+  return long_tests() ? 334 : 2;
 }
 
 int law_frames() {

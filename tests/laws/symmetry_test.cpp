@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The laws of the group "symmetry" on random scenes (laws.hpp, harness.hpp): 3 of them, 334 with CLRAY_LONG_TESTS=1.
+// The laws of the group "symmetry" on random scenes (laws.hpp, harness.hpp): 2 of them, 334 with CLRAY_LONG_TESTS=1.
 #include <doctest/doctest.h>
 
 #include "laws/harness.hpp"

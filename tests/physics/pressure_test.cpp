@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "support/checks.hpp"
+#include "support/some.hpp"
 
 using namespace clray_test;
 using clray::Vec3;
@@ -38,7 +39,7 @@ void check_vector(const clray::VectorEstimate& found, Vec3 exact, double scale, 
 
 TEST_CASE("plates at 0, 30, 60 and 85 degrees: black, Lambert, mirror") {
   const Vec3 n{0, 0, 1};
-  for (double degrees : {0.0, 30.0, 60.0, 85.0}) {
+  for (double degrees : some(2, {60.0, 85.0, 0.0, 30.0})) {
     CAPTURE(degrees);
     const Vec3 s = toward(radians(degrees));
     const double mu = s.z, lit = 2.0 * mu;  // 2 m² of plate

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "support/checks.hpp"
+#include "support/some.hpp"
 
 using namespace clray_test;
 
@@ -28,7 +29,7 @@ void check_pulse(clray::Scene& scene, const Pulse& exact, double beam_m2, double
 }  // namespace
 
 TEST_CASE("Lambert sphere: A = 2 rho R^2/3 and its cubic depth, from everywhere") {
-  for (const clray::Vec3& s : {clray::Vec3(0, 0, 1), clray::Vec3(0, 0, -1), toward(1.2, 2.0)}) {
+  for (const clray::Vec3& s : some<clray::Vec3>(1, {toward(1.2, 2.0), {0, 0, 1}, {0, 0, -1}})) {
     clray::Scene scene = scene_of("sphere", {{"radius", 1.5}}, lambert(0.5));
     monostatic(scene, s);
     check_pulse(scene, lambert_sphere(0.5, 1.5), 9.0, 0.5 / kPi, "sphere");
@@ -55,7 +56,7 @@ TEST_CASE("Lambert sphere small and far off, and as large as its distance: same 
 }
 
 TEST_CASE("Lambert sphere at phase 30, 60, 90 and 150 degrees") {
-  for (double degrees : {30.0, 60.0, 90.0, 150.0}) {
+  for (double degrees : some(2, {60.0, 150.0, 30.0, 90.0})) {
     CAPTURE(degrees);
     clray::Scene scene = scene_of("sphere", {{"radius", 1.0}}, lambert(0.8));
     bistatic(scene, toward(0.3, 0.2), toward(0.3 + radians(degrees), 0.2));
@@ -146,7 +147,7 @@ TEST_CASE("transforms: scale, then rotate, then translate") {
 }
 
 TEST_CASE("Ashikhmin-Shirley sphere: specular part R^2/4 s F0 (n+1)/(n+2), diffuse part by quadrature") {
-  for (double n : {0.0, 50.0, 500.0, 1e5}) {
+  for (double n : some(2, {50.0, 1e5, 0.0, 500.0})) {
     CAPTURE(n);
     // A peak of 10⁵ fills 10⁻⁵ of the beam: 40 of 2^22 rays meet it. Only the claimed error is held there.
     const double bound = n > 1e4 ? 0.2 : kBound;
@@ -160,8 +161,8 @@ TEST_CASE("Ashikhmin-Shirley sphere: specular part R^2/4 s F0 (n+1)/(n+2), diffu
 }
 
 TEST_CASE("Lommel-Seeliger sphere: its disk-integrated phase function") {
-  for (double g : {0.0, 0.3, -0.4})
-    for (double alpha : {0.0, 60.0, 120.0}) {
+  for (double g : some(2, {0.3, -0.4, 0.0}))
+    for (double alpha : some(2, {60.0, 120.0, 0.0})) {
       CAPTURE(g);
       CAPTURE(alpha);
       clray::Material m;
@@ -178,7 +179,7 @@ TEST_CASE("Lommel-Seeliger sphere: its disk-integrated phase function") {
 }
 
 TEST_CASE("mirror sphere scatters R^2/4 toward every phase angle, through a wide cone") {
-  for (double degrees : {0.0, 45.0, 90.0, 150.0}) {
+  for (double degrees : some(1, {45.0, 0.0, 90.0, 150.0})) {
     CAPTURE(degrees);
     clray::Scene scene = scene_of("sphere", {{"radius", 1.0}}, mirror(0.9));
     degrees == 0.0 ? monostatic(scene, toward(0.2)) : bistatic(scene, toward(0.2), toward(0.2 + radians(degrees)));
