@@ -198,6 +198,9 @@ TEST_CASE("rays that all miss leave open a push of one ray: the intervals of 0 h
     CHECK(pressure.torque_coefficient_m3.standard_error[axis] > 500.0 * most);
   }
   CHECK(pressure.absorbed_m2.standard_error == relative(0.5 * most).epsilon(1e-4));
+  for (const clray::Estimate& e :
+       {result.energy.at(0).incident_m2, result.energy[0].reflected_m2, result.energy[0].absorbed_m2})
+    CHECK(e.standard_error == relative(0.5 * most).epsilon(1e-4));
   // What is there: 13/9 of two cross-sections of a sphere of Lambert albedo 1, at most.
   CHECK(2.1314495 * most > 2.0 * 13.0 / 9.0 * kPi * 1e-6);
   CHECK(warns(result, "rays found no light on the body"));

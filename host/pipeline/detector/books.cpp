@@ -25,8 +25,12 @@ EnergyBooks books_of(const RoomResults& x, const LaneRecord& record) {
   Estimate* entries[CLRAY_BOOKS] = {&e.incident_m2, &e.reflected_m2, &e.absorbed_m2,
                                     &e.roulette_m2, &e.truncated_m2, &e.unconnected_specular_m2};
   const std::size_t views = x.plan.layout.shape.views;
-  double rays = rays_of(x.read, 0);
-  for (std::size_t v = 1; v < views; ++v) rays = std::min(rays, rays_of(x.read, v));
+  double rays = rays_of(x.read, 0), beam_m2 = 0.0;
+  for (std::size_t v = 0; v < views; ++v) {
+    rays = std::min(rays, rays_of(x.read, v));
+    beam_m2 += x.plan.beams.area_m2[v] / static_cast<double>(views);
+  }
+  bool met_body = false;
   for (int which = 0; which < CLRAY_BOOKS; ++which) {
     std::vector<double> mean(x.plan.request.replicates, 0.0);
     for (std::size_t v = 0; v < views; ++v) {
@@ -34,7 +38,10 @@ EnergyBooks books_of(const RoomResults& x, const LaneRecord& record) {
       for (std::size_t r = 0; r < mean.size(); ++r) mean[r] += one[r];
     }
     for (double& m : mean) m /= static_cast<double>(views);
-    *entries[which] = estimate_total(mean, rays);
+    // Where no ray met the body, one may have missed what takes or sends on all of it.
+    if (which == CLRAY_BOOK_INCIDENT)
+      met_body = std::any_of(mean.begin(), mean.end(), [](double m) { return m != 0.0; });
+    *entries[which] = estimate_total(mean, rays, 0.0, met_body || which > CLRAY_BOOK_ABSORBED ? 0.0 : beam_m2);
   }
   // Reflected light is not followed, so that it is not known what hits the body again. Several bounces are solved
   // where nothing can.
