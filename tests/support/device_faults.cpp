@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Beside faults.cpp: devices with work-groups of at most CLRAY_FAULT_GROUP work-items, and such that fail. From the
 // launch of this number on (CLRAY_FAULT_LAUNCH, from 1) the device of that launch has failed, and none of its launches,
-// reads, writes and mappings succeeds any more.
+// reads, writes and mappings succeeds any more. CLRAY_FAULT_LAUNCHES is a file that gets the number of launches.
 #include <CL/cl.h>
 #include <dlfcn.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 #include <atomic>
@@ -12,6 +13,16 @@ namespace {
 
 std::atomic<long> launches{0};
 std::atomic<cl_command_queue> broken{nullptr};
+
+struct Launches {
+  ~Launches() {
+    const char* name = getenv("CLRAY_FAULT_LAUNCHES");
+    FILE* file = name != nullptr && launches > 0 ? fopen(name, "w") : nullptr;
+    if (file == nullptr) return;
+    fprintf(file, "%ld\n", launches.load());
+    fclose(file);
+  }
+} at_the_end;
 
 /// Of a work-group; 0: as many as there are.
 size_t most_items() {
