@@ -3,11 +3,11 @@
 // CLRAY_LONG_TESTS=1, cells graded toward
 // where peaks can lie, the sampler's failures a cell of their own (so pdf integrates to 1 minus the probability of
 // failure). Seeds are fixed; the significance 1e-6 is shared by all cases (Bonferroni).
-#include <cstdlib>
 #include <random>
 
 #include "doctest/doctest.h"
 #include "kernels/brdf_models.hpp"
+#include "support/scenes.hpp"
 
 using namespace brdf_test;
 
@@ -71,7 +71,7 @@ TEST_CASE("samplers follow their pdf") {
   const std::vector<Model> all = models(false);
   const double mus[] = {0.7, 0.2, 1.0, 0.02};
   const double significance = 1e-6 / static_cast<double>(all.size());
-  const int count = std::getenv("CLRAY_LONG_TESTS") != nullptr ? 1000000 : 250000;
+  const int count = clray_test::long_tests() ? 1000000 : 250000;
   double least = 1.0;
   int cases = 0;
   for (std::size_t k = 0; k < all.size(); ++k) {

@@ -100,11 +100,11 @@ bool is_pushed(const RoomResults& x, std::size_t v, const LaneRecord& record, st
 }
 
 VectorEstimate vector_of(const RoomResults& x, std::size_t v, const LaneRecord& record, std::size_t first,
-                         std::size_t last, std::uint64_t k) {
+                         std::size_t last, std::uint64_t k, bool pushed) {
   VectorEstimate out;
   const double lever_m = k >= 3 ? x.plan.scales.lever_m : 1.0;
   // Where rays found nothing, they may have missed what hands over all that light can.
-  const double most = is_pushed(x, v, record, first, last) ? 0.0 : kMostPush * x.plan.beams.area_m2[v] * lever_m;
+  const double most = pushed ? 0.0 : kMostPush * x.plan.beams.area_m2[v] * lever_m;
   const bool first_exact = x.read.adds_to(x.detector.first_block);
   for (int axis = 0; axis < 3; ++axis) {
     const std::uint64_t number = k + static_cast<std::uint64_t>(axis);
@@ -127,15 +127,17 @@ PressureResult pressure_record(const RoomResults& x, std::size_t v, const LaneRe
   p.band = x.band(record.first);
   p.source_W_m2 = source_band_W_m2(x.scene.source, p.band) * x.plan.request.orientations[v].light;
   p.sun = x.plan.request.orientations[v].source;
-  p.coefficient_m2 = vector_of(x, v, record, 0, components, 0);
-  p.torque_coefficient_m3 = vector_of(x, v, record, 0, components, 3);
+  const bool pushed = is_pushed(x, v, record, 0, components);
+  x.note(p.key, pushed);
+  p.coefficient_m2 = vector_of(x, v, record, 0, components, 0, pushed);
+  p.torque_coefficient_m3 = vector_of(x, v, record, 0, components, 3, pushed);
   for (std::size_t k = 0; k < components; ++k) {
-    p.component_m2.push_back(vector_of(x, v, record, k, k + 1, 0));
-    p.component_m3.push_back(vector_of(x, v, record, k, k + 1, 3));
+    const bool of_part = is_pushed(x, v, record, k, k + 1);
+    p.component_m2.push_back(vector_of(x, v, record, k, k + 1, 0, of_part));
+    p.component_m3.push_back(vector_of(x, v, record, k, k + 1, 3, of_part));
   }
-  const bool dark = !is_pushed(x, v, record, 0, components);
   p.absorbed_m2 = estimate_total(book(x.plan, x.read, v, record, CLRAY_BOOK_ABSORBED), rays_of(x.read, v), 0.0,
-                                 dark ? x.plan.beams.area_m2[v] : 0.0);
+                                 pushed ? 0.0 : x.plan.beams.area_m2[v]);
   if (x.plan.request.exact()) p.absorbed_m2.rounding_bound = x.read.area_rounding(v);
   return p;
 }
@@ -166,7 +168,6 @@ void pressure_results(const RoomResults& x) {
   for (std::size_t v = 0; v < x.plan.layout.shape.views; ++v) {
     for (const LaneRecord& record : lane_records(x.plan.request.lanes)) {
       PressureResult p = pressure_record(x, v, record);
-      x.note(p.key, is_pushed(x, v, record, 0, x.plan.traits.components));
       PressureResult* known = x.known(x.out.pressure, p.key, record);
       if (known != nullptr) {
         add_pressure(p, known);
